@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 
-# SIGALRM raises an interruption again that could not be raised immediately.
+# SIGALRM repeats an interruption that could not be raised when the signal arrived.
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 IMPORTING = '<frozen importlib._bootstrap>'
 AGAIN_S = 0.002
@@ -69,7 +69,7 @@ def end_at_once():
 
 def _interrupt(number, frame):
     """
-    Raise KeyboardInterrupt once; the verbs then clean up.
+    Raise KeyboardInterrupt once; the verbs clean up when it is raised.
 
     During an import the exception might be swallowed or leave a module half imported; it is then
     raised later.

@@ -6,8 +6,8 @@ parameters of a node.  The same rules are followed here, including the surprisin
 
 * Sections count in the order in which their names first appear, and an assignment without a node
   belongs to ``/**``.  Therefore the section of a node that follows ``/**`` overrides ``-p``.
-* A name has a place for each type of value, and the first type in KINDS wins: ``x: 2.0`` does not
-  override ``x: 1``.
+* A name can have a value of each type at the same time, and that of the first type in KINDS wins:
+  ``x: 2.0`` does not override ``x: 1``.
 * A nested name is always a new entry, a dotted one replaces an earlier entry of that name.
 * There are no aliases and no null, and all values of a list have the same type.
 
@@ -40,7 +40,7 @@ class Parameters:
         """
         Add the sections of a parameter file and return their names.
 
-        content holds the bytes of the file, where its name for messages.
+        ``content`` is the bytes of the file, ``where`` its name in messages.
         """
         file = _File(self._sections, where)
         try:
@@ -50,7 +50,7 @@ class Parameters:
         return list(file.named)
 
     def add_value(self, section, name, text, where):
-        """Add the value of a parameter, as YAML; where describes its source in messages."""
+        """Add the value of a parameter, as YAML; ``where`` describes its source in messages."""
         try:
             if not text:
                 raise ValueError('has no value')
@@ -94,7 +94,7 @@ class Given:
 
 
 class _Entry:
-    """A parameter with a place for each type of value."""
+    """A parameter that can have a value of each type at the same time."""
 
     def __init__(self, name):
         self.name, self.where, self.places = name, '', {}
@@ -189,7 +189,7 @@ class _File:
             elif isinstance(event, yaml.MappingEndEvent):
                 self._end_mapping()
             elif isinstance(event, yaml.AliasEvent):
-                raise ValueError(f'has an alias at {line_of(event)}; ROS accepts none in a '
+                raise ValueError(f'has an alias at {line_of(event)}; ROS allows none in a '
                                  'parameter file')
 
     def _on_scalar(self, event):
@@ -208,7 +208,7 @@ class _File:
         elif not name.startswith(PARAMS_KEY):
             self._node.add(name)
         elif not self._node.count:
-            raise ValueError(f'has no name of a node before {PARAMS_KEY} at {line_of(event)}')
+            raise ValueError(f'has no node name before {PARAMS_KEY} at {line_of(event)}')
         else:
             section = self._node.text
             _check_section(section, event)

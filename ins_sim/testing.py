@@ -119,8 +119,8 @@ class RunningSimulation:
         self._answers = dict(answers or {})
         for name in topics:
             if name not in PUBLISHED:
-                raise ValueError(f'topics: no topic {name!r} is handed over; the nearest known '
-                                 f'one is {nearest_name(name, PUBLISHED)!r}')
+                raise ValueError(f'topics: unknown topic {name!r}; the nearest known one is '
+                                 f'{nearest_name(name, PUBLISHED)!r}')
         self._names = (*ALWAYS, *(name for name in topics if name not in ALWAYS))
         self._count = 0
 
@@ -175,9 +175,9 @@ class RunningSimulation:
         listen = simulation.hand_over.listen
         for name, came in self._came.items():
             if not listen(self.node, PUBLISHED[name], came.append):
-                raise ValueError(f'topics: nothing publishes {name} in this simulation; expected '
-                                 'aided=True for the topics of the aiding nodes, and the '
-                                 'settings that enable the others')
+                raise ValueError(f'topics: no node of this simulation publishes {name}; expected '
+                                 'aided=True for the topics of the aiding nodes, or settings that '
+                                 'enable the topic')
         self._answered = {name: {} for name in self._answers}
         for name, message_class in self._answers.items():
             self.node.create_subscription(message_class, name,
@@ -206,7 +206,7 @@ class RunningSimulation:
         self._serve()
         if self._stop:
             faults = [node.monitor.last_fault for node in self._simulation.members]
-            raise RuntimeError('a fault has ended the simulation (on_fault is stop): '
+            raise RuntimeError('a node ended the simulation: '
                                + next(filter(None, faults), 'stopped'))
         read = {name: list(messages) for name, messages in self._came.items()}
         found = {name: [_message(PUBLISHED[name], data) for data in messages]
@@ -225,8 +225,8 @@ class RunningSimulation:
             now = time.monotonic()
             if now > end_s:
                 raise TimeoutError(f'no message on {missing[0]} with the stamp {stamp_ns} ns in '
-                                   f'{self._timeout_s:g} s; expected an answer of the filter '
-                                   'under test to each reading, with its stamp')
+                                   f'{self._timeout_s:g} s; expected the filter under test to '
+                                   'answer each IMU message with the same stamp')
             if not self._count and now > repeat_s:
                 # The filter may have subscribed in the meantime.
                 self._simulation.repeat_first()

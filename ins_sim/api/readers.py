@@ -50,7 +50,8 @@ def open_motion(source: Name | SimulationSettings | AidedSimulationSettings,
     """
     if isinstance(source, (SimulationSettings, AidedSimulationSettings)):
         if values is not None:
-            raise ValueError('values are given with settings; expected them in read_settings')
+            raise ValueError('values are given with settings; expected values only with a '
+                             'recording: pass them to read_settings instead')
         simulation = source if isinstance(source, SimulationSettings) else source.simulation
         return read_motion(simulation.motion_generator)
     if not isinstance(source, (str, os.PathLike)):

@@ -67,8 +67,8 @@ class ImuRecord:
                              'whole numbers of nanoseconds, int64, of shape (n,)')
         if (t_ns[1:] <= t_ns[:-1]).any():
             k = int(np.argmax(t_ns[1:] <= t_ns[:-1]))
-            raise ValueError(f't_ns[{k + 1}] is {t_ns[k + 1]} after {t_ns[k]}; expected rising '
-                             'stamps')
+            raise ValueError(f't_ns[{k + 1}] is {t_ns[k + 1]} after {t_ns[k]}; expected '
+                             'increasing stamps')
         step_ns = float(np.median(np.diff(t_ns))) if len(t_ns) > 1 else SHORTEST_NS
         if step_ns < SHORTEST_NS:
             raise ValueError(f't_ns has a median step of {step_ns:g} ns; expected at least '
@@ -78,8 +78,8 @@ class ImuRecord:
             values = _array(name, getattr(self, name), f'numbers in {unit}')
             if values.dtype.kind not in 'fiu' or values.shape != (len(t_ns), 3):
                 raise ValueError(f'{name} is an array of {values.dtype}, shape {values.shape}; '
-                                 f'expected numbers in {unit} of shape ({len(t_ns)}, 3), a row '
-                                 'for each of t_ns')
+                                 f'expected numbers in {unit} of shape ({len(t_ns)}, 3), one '
+                                 'row per stamp')
             if not np.isfinite(values).all():
                 k = int(np.argmin(np.isfinite(values).all(axis=1)))
                 raise ValueError(f'{name}[{k}] is {values[k].tolist()}; expected finite numbers')

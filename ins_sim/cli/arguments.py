@@ -15,13 +15,13 @@ def add_settings(parser, default=''):
 
 
 def add_output(parser, default, content):
-    """Add -o; default is a folder, content its description, such as 'folder of the run'."""
+    """Add -o; ``default`` is a folder, ``content`` describes it, such as 'folder of the run'."""
     parser.add_argument('-o', '--output', default=default, metavar='DIR',
                         help=f'{content} (default: %(default)s)')
 
 
 def add_force(parser, replaced):
-    """Add --force; replaced says what it replaces, such as 'the run in DIR'."""
+    """Add --force; ``replaced`` describes what it replaces, such as 'the run in DIR'."""
     parser.add_argument('--force', action='store_true', help=f'replace {replaced}')
 
 

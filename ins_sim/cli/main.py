@@ -71,7 +71,7 @@ def main(arguments=None):
         _say(chosen.verb, f'there is not enough memory{why}; expected a smaller input')
         return BAD_INPUT
     except KeyboardInterrupt:
-        _say(chosen.verb, 'interrupted; only what is named above was written')
+        _say(chosen.verb, 'interrupted; only the files reported above were written')
         return INTERRUPTED
 
 

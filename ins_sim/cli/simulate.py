@@ -114,7 +114,7 @@ def _bag_writer(chosen, settings):
         console.print(f'written: {chosen.bag} with {sum(counts.values())} messages on '
                       f'{len(counts)} topics')
         for file in sorted(Path(chosen.bag).glob(f'{Path(chosen.bag).name}_*')):
-            console.print(f'SHA-256 of {file.name}, which holds this name: '
+            console.print(f'SHA-256 of {file.name}, which contains this file name: '
                           f'{digest.file_digest(file)}')
         console.print(f'SHA-256 of the messages: {digest.payload_digest(chosen.bag)}')
 

@@ -1,5 +1,5 @@
 """
-Meaning of the launch files: their arguments, the checks of these, and their effect on each node.
+Meaning of the launch files: their arguments, how these are checked, and what they change.
 
 Read ``arguments`` first, then ``plan``; only ``actions`` imports launch.
 """

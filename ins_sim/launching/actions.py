@@ -20,12 +20,12 @@ from . import arguments, plan
 
 
 def simulation(path):
-    """Return the description of the launch file ``simulation``; path: of that file."""
+    """Return the description of the launch file ``simulation``, whose path is given."""
     return _description(path, arguments.SIMULATION, _simulation)
 
 
 def replay(path):
-    """Return the description of the launch file ``replay``; path: of that file."""
+    """Return the description of the launch file ``replay``, whose path is given."""
     return _description(path, arguments.REPLAY, _replay)
 
 

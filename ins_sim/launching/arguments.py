@@ -1,4 +1,4 @@
-"""The arguments of the launch files, and all checks of their values that need no ROS."""
+"""The arguments of the launch files, and the checks of their values that do not need ROS."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,8 +23,11 @@ class Argument:
     """
     An argument of a launch file.
 
-    kind: str, float or bool; for the last two '' means None (not given). choices: allowed values,
-    if there are few. default: None if the argument is required.
+    Attributes
+    ----------
+    default : None if the argument is required
+    kind : str, float or bool; for the last two '' means None (not given)
+    choices : allowed values, if there are few
     """
 
     name: str
@@ -38,19 +41,19 @@ _FILES = Argument('params_file', '', 'parameter files, separated by commas or sp
                   'names of shipped files; a later file overrides the same section of an earlier '
                   'one')
 _IMU = Argument('imu', '', 'instrument errors: ' + ', '.join(INSTRUMENTS) + ', or a path; empty = '
-                'those of the parameter files, or an ideal IMU')
+                'as in the parameter files, or an ideal IMU')
 _NAMESPACE = Argument('namespace', '', 'namespace of the nodes')
 _RATE = Argument('rate_hz', '', 'rate of the truth and of the IMU in all nodes, Hz; empty = as '
-                 'the parameter files say, or 100', float)
-_PREFIX = Argument('prefix', '', 'prefix of all frames, such as uav1; empty = as the parameter '
-                   'files say')
+                 'in the parameter files, or 100', float)
+_PREFIX = Argument('prefix', '', 'prefix of all frames, such as uav1; empty = as in the parameter '
+                   'files')
 _SHUTDOWN = Argument('shutdown', 'true', 'true or false: the end of the run ends the whole '
                      'launch (true) or only the nodes of this file (false). A node that fails '
                      'always ends the launch',
                      bool)
 
 SIMULATION = (
-    Argument('motion', '', 'motion: ' + ', '.join(MOTIONS) + ', or a path; empty = that of the '
+    Argument('motion', '', 'motion: ' + ', '.join(MOTIONS) + ', or a path; empty = as in the '
              'parameter files, or the racetrack'),
     _IMU, _FILES, _RATE,
     Argument('aided', 'false', 'true or false: also start velocity_meter, gnss and '
@@ -62,9 +65,9 @@ SIMULATION = (
              'the parameter files, or ins (aided with aided:=true)',
              choices=('none', 'truth', 'ins', 'aided')),
     Argument('real_time_factor', '', 'simulated seconds per second, 0 = as fast as possible; '
-             'empty = as the parameter files say, or 1', float),
+             'empty = as in the parameter files, or 1', float),
     Argument('lock_step', '', 'true or false: wait for the consumers, so that nothing is lost; '
-             'empty = true with record, else as the parameter files say, or false', bool),
+             'empty = true with record, else as in the parameter files, or false', bool),
     Argument('record', '', 'folder of a new bag for the topics of the nodes; empty = none'),
     Argument('use_sim_time', 'false', 'true or false: the nodes take their time from /clock, '
              'which the generator then publishes', bool),
@@ -133,7 +136,8 @@ def preset_file(argument, name, presets):
     """
     Return the path of a preset, given by its name or by its path.
 
-    presets: the known names. Raises ValueError with the nearest name, or FileNotFoundError.
+    ``presets`` are the known names. Raises ValueError, which names the nearest one, or
+    FileNotFoundError.
     """
     if name in presets or _is_path(name):
         return str(resources.parameter_file(name))

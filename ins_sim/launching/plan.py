@@ -22,8 +22,8 @@ from ins_sim.settings.place import Frames
 from ins_sim.yaml_text import Dumper, read_bytes
 from . import arguments
 
-LOSSES = ('record without lock_step: where the machine is too slow samples are lost; the recorder '
-          'says how many, and lock_step:=true loses none')
+LOSSES = ('record without lock_step: samples are lost if the machine is too slow; the recorder '
+          'reports how many, and with lock_step:=true none are lost')
 NO_TRANSFORMS = ('tf2_msgs is not installed (apt: ros-jazzy-tf2-msgs): the nodes publish no '
                  'transforms')
 
@@ -33,9 +33,14 @@ class Plan:
     """
     The processes that are started, and their parameters.
 
-    processes: see ``graph``; files: paths of parameter files, in order; defaults: {parameter:
-    value} below these; overrides: {node name: {parameter: value}} above these; namespace: of the
-    nodes; said: messages for the user.
+    Attributes
+    ----------
+    processes : see ``graph``
+    files : paths of parameter files, in order
+    defaults : {parameter: value}, overridden by the files
+    overrides : {node name: {parameter: value}}, which override the files
+    namespace : namespace of the nodes
+    said : messages for the user
     """
 
     processes: tuple
@@ -47,14 +52,14 @@ class Plan:
 
     @property
     def overrides_text(self):
-        """Return the text of a parameter file with the overrides, '' without any."""
+        """Return the text of a parameter file with the overrides, or '' if there are none."""
         sections = {_full(self.namespace, node): {'ros__parameters': values}
                     for node, values in self.overrides.items() if values}
         return yaml.dump(sections, Dumper=Dumper, sort_keys=False) if sections else ''
 
     @property
     def named(self):
-        """Return the node names to be set; a process with several nodes gets none."""
+        """Return the names of processes with one node; in others the nodes keep their names."""
         return {process.name for process in self.processes} - {graph.ONE_PROCESS.name}
 
     @property
@@ -68,12 +73,13 @@ def simulation(texts, namespace=''):
     """
     Return the Plan of the launch file ``simulation`` for {argument: text}.
 
-    namespace: of the nodes, including those of the including files. Raises ValueError or OSError.
+    ``namespace`` is that of the nodes, including the namespaces pushed by including launch files.
+    Raises ValueError or OSError.
     """
     value = arguments.read_values(texts, arguments.SIMULATION)
     if value['tf'] == 'aided' and not value['aided']:
-        raise ValueError('tf is aided; expected aided:=true with it, for aided_navigator places '
-                         'map -> odom then')
+        raise ValueError('tf is aided; expected aided:=true with it, because aided_navigator '
+                         'publishes map -> odom then')
     files = []
     if value['motion']:
         files.append(arguments.preset_file('motion', value['motion'], arguments.MOTIONS))
@@ -103,12 +109,12 @@ def replay(texts, namespace=''):
     """
     Return (Plan, graph.Replay, values) of the launch file ``replay`` for {argument: text}.
 
-    namespace: see ``simulation``. Raises ValueError or OSError.
+    For ``namespace`` see ``simulation``. Raises ValueError or OSError.
     """
     value = arguments.read_values(texts, arguments.REPLAY)
     played = graph.REPLAYS[value['source']]
     if value['imu'] and value['source'] == 'imu':
-        raise ValueError(f'imu is {value["imu"]!r} with source:=imu, whose readings are in the '
+        raise ValueError(f'imu is {value["imu"]!r}, but source:=imu plays the IMU samples of the '
                          'bag; expected source:=truth with it')
     defaults, said = _transforms('ins')
     plan = Plan(played.processes, _files(value), defaults, _common(played.processes, value),
@@ -144,7 +150,7 @@ def _files(value):
 
 
 def _common(processes, value):
-    """Return {node: {parameter: value}} of the arguments that are the same for all nodes."""
+    """Return {node: {parameter: value}} of the arguments that apply to all nodes."""
     given = {'frames.prefix': value['prefix'], 'tf.source': value['tf'],
              'rate_hz': value['rate_hz']}
     given = {name: one for name, one in given.items() if one not in ('', None)}
@@ -187,7 +193,7 @@ def _read(files, defaults, namespace):
 
 
 def _recorded(value, read):
-    """Return the names of the topics to be recorded, as far as they are published."""
+    """Return the names of the topics to be recorded, without those that are not published."""
     recorded = [topics.RUN, *topics.DATA, *(topics.AIDING if value['aided'] else ())]
     if read.get('motion.kind') == 'guided':
         recorded += topics.GUIDANCE

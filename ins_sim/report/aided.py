@@ -14,7 +14,7 @@ from ins_sim.core.simulation.aided_run import AidedResult
 from ins_sim.settings.simulation import AidedSimulationSettings
 from .consistency import mean_interval, THREE_SIGMA
 
-# of the table: head, text of a Row or '', and what it means where that is not plain
+# A column of the table: heading, function from a row to its text, meaning of the heading or ''.
 _Column = namedtuple('_Column', 'head value meaning')
 AIDED = 'aided '
 ARCMIN = DEG / 60.0
@@ -259,10 +259,11 @@ def _expected(row):
 
 COLUMNS = (
     _Column('aided', lambda row: _short(row.measured), ''),
-    _Column('alone', lambda row: _short(row.free), 'alone: the strapdown, from its own start'),
-    _Column('sigma', lambda row: _short(row.sigma), 'sigma: by the filter'),
+    _Column('alone', lambda row: _short(row.free), 'alone: the unaided strapdown with its own '
+            'initial state'),
+    _Column('sigma', lambda row: _short(row.sigma), 'sigma: according to the filter'),
     _Column('expected', _expected,
-            'expected of a NIS: the interval that holds 95 % of consistent runs'))
+            'expected, for NIS: the interval that contains 95 % of consistent runs'))
 
 
 def fault_lines(flown):

@@ -85,7 +85,7 @@ def _terms(tau):
 
 def estimate_deviation(samples, rate_hz):
     """
-    Return the Allan deviation of samples (n,) or (n, channels), taken at rate_hz.
+    Return the Allan deviation of samples (n,) or (n, channels) at ``rate_hz``.
 
     Raises ValueError if the record is too short or not finite.
     """
@@ -107,9 +107,9 @@ def fit_coefficients(allan, known=0.0):
     """
     Return the Coefficients that fit the mean Allan variance of all channels best.
 
-    Least squares of the logarithm of the variance, weighted by the number of intervals of length
-    tau in the record, all coefficients not negative.  known: Allan variance at each tau (m,) of
-    what is known to be there besides, such as gauss_markov_variance.
+    The logarithm of the variance is fitted by least squares, weighted by the number of intervals
+    of length tau in the record; no coefficient is negative. ``known`` (m,) is the Allan variance
+    of other known contributions at each tau, such as ``gauss_markov_variance``.
     """
     tau, variance = allan.tau_s, np.mean(allan.deviation ** 2, axis=-1)
     if not variance.all():

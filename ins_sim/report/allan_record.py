@@ -24,7 +24,7 @@ NEAR, NEAR_IN_BURSTS, BURSTS = 10, 400, 0.1
 EVENLY = 0.25
 # The rate is constant if the mean intervals of PARTS parts of the record agree within STEADY.
 PARTS, STEADY = 100, 0.02
-WAY_OUT = '"-p rate_hz:=HZ" takes all readings in their order as taken at that rate'
+WAY_OUT = '"-p rate_hz:=HZ" uses all readings in their order, evenly spaced at that rate'
 
 
 @dataclass(frozen=True)
@@ -58,12 +58,12 @@ def regular_record(imu, rate_hz=None):
     if not finite.all():
         bad = total - np.count_nonzero(finite)
         notes.append(f'{bad} of {total} readings {"holds" if bad == 1 else "hold"} a value that '
-                     'is no number and counts as lost')
+                     'is not a number and counts as lost')
     if given:
         cuts = np.flatnonzero(np.diff(finite)) + 1
         imu = _longest(imu, cuts, finite, notes)
-        notes.append(f'{len(imu)} readings are taken at {rate_hz:.6g} Hz, as rate_hz says; their '
-                     f'stamps say {_stamped_rate(imu.t_ns)}')
+        notes.append(f'{len(imu)} readings are assumed to be spaced evenly at {rate_hz:.6g} Hz '
+                     f'(rate_hz); the rate of their stamps is {_stamped_rate(imu.t_ns)}')
     else:
         imu = _without_copies(imu[finite], notes)
         if len(imu) >= LEAST:
@@ -79,7 +79,7 @@ def regular_record(imu, rate_hz=None):
 
 def _stamped_rate(t_ns):
     length_s = (int(t_ns[-1]) - int(t_ns[0])) * 1e-9 if len(t_ns) else 0.0
-    return f'{(len(t_ns) - 1) / length_s:.6g} Hz' if length_s > 0.0 else 'nothing of a rate'
+    return f'{(len(t_ns) - 1) / length_s:.6g} Hz' if length_s > 0.0 else 'not defined'
 
 
 def _longest(imu, cuts, good, notes):
@@ -90,7 +90,7 @@ def _longest(imu, cuts, good, notes):
     part = imu[edges[k]:edges[k] + lengths[k]]
     if len(cuts) and len(part):
         since_s = (int(part.t_ns[0]) - int(imu.t_ns[0])) * 1e-9
-        notes.append(f'the longest part between them is taken: {len(part)} of {len(imu)} '
+        notes.append(f'the longest part between them is used: {len(part)} of {len(imu)} '
                      f'readings, from {since_s:.6g} s after the start')
     return part
 
@@ -101,7 +101,8 @@ def _without_copies(imu, notes):
         imu.f[1:] == imu.f[:-1]).all(axis=1)
     if again.any():
         twice = _told(np.count_nonzero(again), 'reading is', 'readings are')
-        notes.append(f'{twice} there twice, with stamp and values: the copies are left out')
+        notes.append(f'{twice} present twice, with the same stamp and values; the copies are '
+                     'removed')
         imu = imu[np.concatenate([[True], ~again])]
     return imu
 
@@ -111,7 +112,7 @@ def _steady(imu, notes):
     t_s = (imu.t_ns - imu.t_ns[0]) * 1e-9
     step = _usual_step(t_s)
     if not step > 0.0:
-        raise ValueError(f'the stamps of the record do not go on: of {len(t_s) - 1} intervals '
+        raise ValueError(f'the stamps of the record do not increase: of {len(t_s) - 1} intervals '
                          f'{np.count_nonzero(np.diff(t_s) <= 0.0)} are not positive; {WAY_OUT}')
     cuts, late = _losses(t_s, step)
     if len(cuts):
@@ -213,7 +214,7 @@ def _at_one_rate(imu, notes):
         return imu
     part = imu[edges[first]:edges[first + count] + 1]
     notes.append(f'the rate changes, from {1.0 / means.max():.6g} to {1.0 / means.min():.6g} Hz: '
-                 f'the longest part within {100.0 * STEADY:.0f} % of one rate is taken, '
+                 f'the longest part within {100.0 * STEADY:.0f} % of one rate is used, '
                  f'{len(part)} of {len(imu)} readings, from '
                  f'{(int(part.t_ns[0]) - int(imu.t_ns[0])) * 1e-9:.6g} s after its start')
     return part

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from ins_sim.visible_text import visible
 
-# wider than any table
+# Wider than any table.
 WIDEST = 10000
 
 

@@ -42,13 +42,13 @@ def coverage_lines(settings, prediction):
     if prediction is None:
         return []
     lines = ['the prediction covers delays, tuned gyros and initial errors, linear in the errors; '
-             f'of second order are at most {prediction.position_bound:.3g} m and '
+             f'second-order effects are at most {prediction.position_bound:.3g} m and '
              f'{prediction.drift_bound * DEG_PER_HOUR:.3g} deg/h (largest attitude error '
              f'{prediction.turned:.3g} rad)']
     names = instrument_errors(settings)
     if names:
         north, east = prediction.largest[1], prediction.largest[0]
-        lines.append(f'the errors of the instruments are on ({", ".join(names)}), which it does '
-                     f'not cover: its {north:.3g} m North and {east:.3g} m East are the part '
-                     'without them, and are not compared with measured errors')
+        lines.append(f'errors of the instruments are enabled ({", ".join(names)}), which the '
+                     f'prediction does not cover: its {north:.3g} m North and {east:.3g} m East '
+                     'are the error without them and are not compared with measured errors')
     return lines

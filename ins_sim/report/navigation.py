@@ -111,9 +111,9 @@ def _page(title, settings, result, charts, files):
                 tuple(result.notes), settings,
                 files={MARK: 'the solution and its errors (numpy.load)',
                        'summary.json': 'figures, notes and errors',
-                       'parameters.yaml': 'every setting, with which navigate runs again',
+                       'parameters.yaml': 'every setting; with it navigate repeats the run',
                        **{f'{chart.name}.png': chart.title for chart in charts},
-                       FILE: 'the track for programs of maps', **files})
+                       FILE: 'the track for map programs', **files})
 
 
 def _answer(result):
@@ -128,12 +128,12 @@ def _answer(result):
         end = error_rows(comparison, start_ns, end_ns)[-1]
         words = []
         if end.horizontal_m is not None:
-            words.append(f'{amount(LENGTHS, end.horizontal_m)} off horizontally')
+            words.append(f'{amount(LENGTHS, end.horizontal_m)} horizontally')
         if end.speed_m_s is not None:
             words.append(f'{end.speed_m_s:.3g} m/s in horizontal velocity')
         if end.heading_deg is not None:
             words.append(f'{abs(end.heading_deg):.3g} deg in heading')
         sentences.append(
-            f'After {length} the solution is {", ".join(words)} from {comparison.name}.'
+            f'After {length} the solution differs by {", ".join(words)} from {comparison.name}.'
             if words else f'{comparison.name} ends before the solution does.')
     return ' '.join(sentences)

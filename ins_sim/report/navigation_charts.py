@@ -79,7 +79,7 @@ def _together(kind, names, parts):
     """
     Return what each panel shows and its lines, {part: lines}.
 
-    Both parts in one, or a panel each where one part hides the other.
+    Both parts share a panel unless one of them would hide the other.
     """
     low, high = sorted(_largest(part) for part in parts)
     found = dict(zip(names, parts))
@@ -88,7 +88,7 @@ def _together(kind, names, parts):
 
 
 def _error_panel(what, units, lines, several, result, gap_factor, clock):
-    """Return the Panel of an error: the lines of each part, one a reference."""
+    """Return the Panel of an error: for each part, one line per reference."""
     factor, unit = scale(units, max(map(_largest, lines.values())))
     marks = [*_gaps(result.states, gap_factor, clock),
              Level(y=0.0, colour=palette.GREY, dash=DOTTED)]

@@ -176,7 +176,7 @@ def show_noise(noise, title, console):
     """Print the rows of a Noise."""
     names = ', '.join(f'{t.symbol} {t.name}' for t in TRIADS[noise.triad])
     table = Table(title=f'{noise.triad}: {title}',
-                  caption=f'{names}; all: of the mean variance of the axes; -: not to be seen')
+                  caption=f'{names}; all: of the mean variance of the axes; -: not observable')
     known = noise.settings is not None
     table.add_column('')
     table.add_column('unit')

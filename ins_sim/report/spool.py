@@ -108,5 +108,5 @@ class SpooledColumn:
         rows = np.empty((stop - start, *self._row), self.dtype)
         self._file.seek(start * self._size)
         if self._file.readinto(rows.data) != rows.nbytes:
-            raise OSError('a temporary file of the run has lost its end')
+            raise OSError('a temporary file of the run was truncated')
         return rows

@@ -129,8 +129,8 @@ def withheld_lines(settings):
     if not count:
         return []
     what = 'reading is' if count == 1 else f'{count} readings are'
-    return [f'the last {what} left out: a channel of negative delay would need the truth from '
-            'beyond the end of the run']
+    return [f'the last {what} left out, because a channel with a negative delay needs the truth '
+            'after the end of the run']
 
 
 def parity_lines(sensor, imu):
@@ -147,5 +147,5 @@ def parity_lines(sensor, imu):
                 f'{len(found)} windows']
     t_s, mean, threshold, _ = beyond[0]
     return [f'parity of the gyro channels: beyond the threshold in {len(beyond)} of {len(found)} '
-            f'windows, first in that to {t_s:g} s: {mean * DEG_PER_HOUR:.4g} deg/h, expected at '
-            f'most {threshold * DEG_PER_HOUR:.4g}']
+            f'windows, first in the one that ends at {t_s:g} s: {mean * DEG_PER_HOUR:.4g} deg/h; '
+            f'expected at most {threshold * DEG_PER_HOUR:.4g} deg/h']

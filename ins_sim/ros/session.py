@@ -120,7 +120,7 @@ class Session:
 
     def _obituary(self, name, code):
         lines = self._log(name).read_text(errors='replace').strip().splitlines()
-        return f'{name} ended with exit code {code}: {lines[-1] if lines else "it said nothing"}'
+        return f'{name} ended with exit code {code}: {lines[-1] if lines else "no output"}'
 
     def __exit__(self, *exception):
         # Destroy our own node first: it could hang if other participants vanish at the same time

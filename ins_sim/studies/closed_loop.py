@@ -202,13 +202,14 @@ def study_loop(settings):
     loop, rate_hz = lateral_loop(generator), settings.velocity_meter.rate_hz
     if loop is None or loop.k1 == 0.0:
         raise ValueError(f'guidance.autopilot is {generator.guidance.autopilot}; expected one '
-                         'with a gain of the offset, for the linear limits of the study')
+                         'with a gain for the offset, which the linear limits of the study need')
     if generator.guidance.limit_deg == 0.0:
-        raise ValueError('guidance.limit_deg is 0 deg; expected more, or nothing is steered')
+        raise ValueError('guidance.limit_deg is 0 deg; expected more than 0, because the '
+                         'autopilot cannot steer otherwise')
     control_hz = generator.motion.guided.control_rate_hz
     if control_hz != rate_hz:
         raise ValueError(f'motion.guided.control_rate_hz is {control_hz:g} Hz; expected rate_hz, '
-                         f'{rate_hz:g} Hz, in the study')
+                         f'{rate_hz:g} Hz, which the study requires')
     return loop
 
 

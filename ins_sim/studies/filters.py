@@ -109,7 +109,7 @@ def cases_of(filters=None, cycles=(1000,)):
             raise ValueError(f'filter is {name!r}; expected one of {", ".join(FILTERS)}')
     cases = [FilterCase(name, cycles[0]) for name in names]
     if not cases:
-        raise ValueError('there is no filter; expected one or more')
+        raise ValueError('filters is empty; expected one or more')
     return tuple(cases + [FilterCase('eskf', n) for n in cycles[1:] if 'eskf' in names])
 
 

@@ -167,8 +167,8 @@ def stability_limits(parameters, step_s, low_hz=20.0, high_hz=2000.0, resolution
 
     start = parameters.speed_hz
     if not decays(start):
-        raise ValueError(f'speed_hz is {start:g}, at which RK4 with {1e3 * step_s:g} ms grows; '
-                         'expected a speed between the limits')
+        raise ValueError(f'speed_hz is {start:g} Hz, at which RK4 with a step of '
+                         f'{1e3 * step_s:g} ms is unstable; expected a stable speed')
     limits = []
     for stride, end in ((-resolution_hz, low_hz), (resolution_hz, high_hz)):
         inside, outside = start, start + stride

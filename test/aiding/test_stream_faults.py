@@ -111,7 +111,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
     health.count([JudgedFix(GNSS, 7 * SECOND, gated),
                   JudgedFix(GNSS, 8 * SECOND, refused_fix('invalid fix: outage'))])
     wrong, values = health.describe()
-    assert wrong == ('gnss: the fix at 7.000000000 s is not taken: its innovation is beyond the '
+    assert wrong == ('gnss: the fix at 7.000000000 s was rejected: its innovation is beyond the '
                      'gate')
     assert (dict(values)['gnss refused'], dict(values)['gnss none']) == (1, 1)
     assert dict(values)['last refusal'] == 'gnss: its innovation is beyond the gate'

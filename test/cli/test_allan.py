@@ -116,16 +116,17 @@ def test_a_bag_of_imu_messages(tmp_path, capsys):
     assert main(['allan', str(tmp_path / 'gap'), '-o', str(tmp_path / 'out3')]) == 0
     said = capsys.readouterr().out
     assert 'gap: 1 reading is lost, the first at 12.33 s\n' in said
-    assert 'gap: the longest part between them is taken: 2765 of 3999 readings, from 12.35' in said
+    assert 'gap: the longest part between them is used: 2765 of 3999 readings, from 12.35' in said
     assert rows(tmp_path / 'out3')['gyro', 'N']['x'] == pytest.approx(
         SIGMA[0] * 0.1 * 57.29578 * 60.0, rel=0.07)
     write_bag(tmp_path / 'same', np.full(400, t_ns[0]), '/imu/data')
     same = ['allan', str(tmp_path / 'same'), '-o', str(tmp_path / 'out4')]
     assert main(same) == 2
-    assert 'same: the stamps of the record do not go on: of 399' in capsys.readouterr().err
+    assert 'same: the stamps of the record do not increase: of 399' in capsys.readouterr().err
     assert not (tmp_path / 'out4').exists()
     assert main([*same, '-p', 'rate_hz:=100.0']) == 0
-    assert 'same: 400 readings are taken at 100 Hz, as rate_hz says' in capsys.readouterr().out
+    assert 'same: 400 readings are assumed to be spaced evenly at 100 Hz (rate_hz)' in \
+        capsys.readouterr().out
 
 
 def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
@@ -147,12 +148,12 @@ def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
 
 
 @pytest.mark.parametrize('arguments, sentence', [
-    ([], 'the instrument of the parameters is perfect; expected noise, such as'),
+    ([], 'the instrument of the parameters has no errors; expected noise, such as'),
     (['absent'], 'absent is neither a run of "ins_sim simulate" (run.npz) nor a rosbag2 bag'),
     ([*FOG, '--duration', '1'], '--duration is 1 s; expected 4 to'),
     ([*FOG, '--duration', 'nan'], '--duration is nan s; expected 4 to'),
-    ([*FOG, '--topic', 'imu'], '--topic is imu; expected a bag as SOURCE'),
-    (['absent', '--duration', '5'], '--duration is 5; expected no SOURCE with it'),
+    ([*FOG, '--topic', 'imu'], '--topic is imu, but there is no SOURCE; expected a bag'),
+    (['absent', '--duration', '5'], '--duration is 5, but a SOURCE is given; expected only one'),
     (['-p', 'gyro.errors.angle_random_walk:=1'], "known one is 'gyro.errors.angle_random_walk_"),
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path, capsys,

@@ -80,7 +80,7 @@ def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
     # Files of a bag contain its name: in a folder of another name only the messages are equal.
     bag_of(tmp_path, *options, '-p', 'seed:=1', name='other', motion=motion)
     said = capsys.readouterr().out
-    assert re.search(r'SHA-256 of other_0\.\w+, which holds this name: ', said)
+    assert re.search(r'SHA-256 of other_0\.\w+, which contains this file name: ', said)
     other = re.findall(r'SHA-256 of .*: ([0-9a-f]{64})', said)
     assert other[0] != sums[0][0] and other[1] == sums[0][1]
     with open_bag(path) as bag:

@@ -59,7 +59,7 @@ def test_the_map(short, tmp_path):
     (['--gains', '0'], '--gains is 0 and --jobs 0; expected 1 or more gains'),
     (['--params-file', 'route_flight'], 'motion.kind is route; expected guided'),
     (['-p', 'motion.guided.control_rate_hz:=50.0'], 'motion.guided.control_rate_hz is 50 Hz; '
-     'expected rate_hz, 100 Hz, in the study'),
+     'expected rate_hz, 100 Hz, which the study'),
     (['-p', 'gain_per_sec:=1.0'], "unknown parameter 'gain_per_sec'; the nearest known one is "
      "'gain_per_s'"),
 ])

@@ -90,7 +90,7 @@ def test_a_moving_start_navigates_back_to_the_truth(storage, tmp_path, capsys):
     assert np.linalg.norm(rest) < 0.01 * np.linalg.norm(at_100)
     for name in ('navigation', 'track'):
         assert (out / f'{name}.png').read_bytes().startswith(b'\x89PNG')
-    assert 'off horizontally' in (out / 'report.html').read_text(encoding='utf-8')
+    assert 'horizontally, ' in (out / 'report.html').read_text(encoding='utf-8')
     with np.load(out / 'nav.npz') as arrays:
         assert arrays['states_q_nb'].shape == (2001, 4)
         assert arrays['states_t_ns'][0] == EPOCH

@@ -159,7 +159,7 @@ def test_compare_orientation(capsys):
                  'duration_s:=20.0']) == 0
     text = capsys.readouterr().out
     assert all(word in text for word in ('quaternion', 'poisson', 'euler_vector',
-                                         'off the quaternion', 'max |dN|'))
+                                         'angle from the quaternion', 'max |dN|'))
 
 
 def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):

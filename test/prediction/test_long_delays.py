@@ -133,13 +133,13 @@ def test_predict_says_what_it_covers(capsys):
     assert main(words) == 0
     said = ' '.join(capsys.readouterr().out.split())
     assert ('the prediction covers delays, tuned gyros and initial errors, linear in the errors; '
-            'of second order are at most ') in said
+            'second-order effects are at most ') in said
     assert 'errors of the instruments' not in said
     assert main([*words, '--params-file', 'imu_tactical_fog']) == 0
     said = ' '.join(capsys.readouterr().out.split())
-    assert ('the errors of the instruments are on (accelerometer.errors, gyro.errors), which it '
-            'does not cover: its 0.0575 m North and 0.00414 m East are the part without them') \
-        in said
+    assert ('errors of the instruments are enabled (accelerometer.errors, gyro.errors), which the '
+            'prediction does not cover: its 0.0575 m North and 0.00414 m East are the error '
+            'without them') in said
 
 
 def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsys, monkeypatch):

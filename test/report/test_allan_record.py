@@ -47,7 +47,7 @@ CASES = {
     'a jitter of 5 %': (jitter(0.0005), COUNT, ()),
     'a jitter of 30 %': (jitter(0.003), COUNT, ('the stamps are evened out, by at most 0.01',)),
     'one lost': (np.delete(EVEN, 7000), 12_999, (
-        '1 reading is lost, the first at 69.99 s', 'the longest part between them is taken: 12999 '
+        '1 reading is lost, the first at 69.99 s', 'the longest part between them is used: 12999 '
         'of 19999 readings, from 70.01 s after the start')),
     'four lost': (np.delete(EVEN, [7000, 7001, 7002, 15000]), 7997, (
         '4 readings are lost, the first at 69.99 s', '7997 of 19996 readings')),
@@ -90,8 +90,8 @@ def test_readings_that_are_no_numbers_count_as_lost():
     imu = record(EVEN)
     imu.omega[700], imu.f[9000, 1] = np.nan, np.inf
     found = regular_record(imu)
-    assert found.notes[0] == ('2 of 20000 readings hold a value that is no number and counts as '
-                              'lost')
+    assert found.notes[0] == ('2 of 20000 readings hold a value that is not a number and counts '
+                              'as lost')
     assert len(found.imu) == 10_999 and len(found.notes) == 3
     check_density(found)
     imu.omega[:] = np.nan
@@ -102,8 +102,8 @@ def test_readings_that_are_no_numbers_count_as_lost():
 def test_a_message_that_is_there_twice():
     """A copy with the same stamp and values is left out; a different reading is not."""
     found = regular_record(record(EVEN)[np.insert(NUMBER, 500, 500)])
-    assert found.notes == ('1 reading is there twice, with stamp and values: the copies are left '
-                           'out',)
+    assert found.notes == ('1 reading is present twice, with the same stamp and values; the '
+                           'copies are removed',)
     assert len(found.imu) == COUNT
     found = regular_record(record(np.insert(EVEN, 500, EVEN[500])))
     assert 'the stamps fall behind at 1 place, the first at 5 s' in found.notes[0]
@@ -113,13 +113,13 @@ def test_the_rate_may_be_given():
     """If all messages have one stamp, the rate given by the user is used."""
     imu = record(np.full(COUNT, 7))
     with pytest.raises(ValueError, match=r'of 19999 intervals 19999 are not positive; '
-                                         r'"-p rate_hz:=HZ" takes all readings in their order'):
+                                         r'"-p rate_hz:=HZ" uses all readings in their order'):
         regular_record(imu)
     found = regular_record(imu, RATE)
-    assert found.notes == ('20000 readings are taken at 100 Hz, as rate_hz says; their stamps say '
-                           'nothing of a rate',)
+    assert found.notes == ('20000 readings are assumed to be spaced evenly at 100 Hz (rate_hz); '
+                           'the rate of their stamps is not defined',)
     check_density(found)
-    assert 'their stamps say 100 Hz' in regular_record(record(EVEN), 50.0).notes[0]
+    assert 'the rate of their stamps is 100 Hz' in regular_record(record(EVEN), 50.0).notes[0]
 
 
 @pytest.mark.parametrize('count', [0, 1, 2, 39])

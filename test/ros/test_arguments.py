@@ -19,8 +19,8 @@ def test_help_says_what_can_be_set_later(capsys):
     """For the generator only its pace can be set later."""
     assert answer('motion_generator', ['motion_generator', '-h']) == 0
     said = capsys.readouterr().out
-    assert said.count('can be set while it runs') == 1
-    assert '(implies lock_step) (default: 1.0; can be set while it runs)' in said
+    assert said.count('can be set while the node runs') == 1
+    assert '(implies lock_step) (default: 1.0; can be set while the node runs)' in said
 
 
 @pytest.mark.parametrize('words, bad', [
@@ -30,7 +30,7 @@ def test_what_is_no_ros_argument(words, bad, capsys):
     """One message, exit code 2."""
     assert answer('strapdown', words) == 2
     said = capsys.readouterr().err
-    assert f'strapdown: unknown argument {bad}; expected ROS arguments behind --ros-args' in said
+    assert f'strapdown: unknown argument {bad}; expected ROS arguments after --ros-args' in said
     assert said.count('\n') == 1
 
 

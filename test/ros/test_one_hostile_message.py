@@ -178,5 +178,5 @@ def test_what_nobody_foresaw_is_a_fault(flight):
     assert len(calls) == 5
     text, = [s for s in flight.fed.logs['strapdown'].kept if 'OverflowError' in s]
     assert text.startswith('OverflowError (math range error) at line ')
-    assert 'of test_one_hostile_message.py; what was being computed is dropped' in text
+    assert 'of test_one_hostile_message.py; the current computation is discarded' in text
     flight.calm(20)

@@ -165,7 +165,7 @@ def test_an_injected_fault_is_seen(chain, ros_domain):
         assert abs(parities[max(parities)][1]) <= parities[max(parities)][2]
         assert not [m for _, _, m in seen if 'parity' in m]
         answer = listener.call(SetBool, 'imu_sensor/fault', SetBool.Request(data=True))
-        assert answer.success and answer.message == 'gyro_2_z has its fault'
+        assert answer.success and answer.message == 'gyro_2_z has a fault'
         hear(lambda p: abs(p[1]) > 100.0 * p[2])
         listener.spin_until(lambda: [level for name, level, m in seen if name == '/imu_sensor'
                                      and 'a channel has a fault' in m and level == b'\x01'])

@@ -108,7 +108,7 @@ BAD_ASSIGNMENTS = [
     ('motion.kind:=recording', 'motion.recording.path is empty'),
     ('rate_hz=5', "-p 'rate_hz=5' has no \":=\"; expected NAME:=VALUE"),
     ('rate_hz:=[', '-p rate_hz:=[ is not YAML: line '),
-    ('rate_hz:=', '-p rate_hz:= has no value'), ('rate_hz:={a: 1}', 'is neither a single '),
+    ('rate_hz:=', '-p rate_hz:= has no value'), ('rate_hz:={a: 1}', 'is neither a single value'),
     ('rate_hz:=*a', 'is neither a single value nor a list'),
     ('rate_hz:=' + '9' * 400, "'999"), ('rate_hz:=1:30', "rate_hz is '1:30'; expected a number"),
 ]
@@ -129,7 +129,7 @@ BAD_FILES = [
     (b'strapdwn:\n  ros__parameters: {rate_hz: 1.0}', "the nearest known one is 'strapdown'"),
     (b'strapdown:\n  rate_hz: 1.0', 'has \'1.0\' before "ros__parameters" at line 2; expected '
      'sections such as "/**: ros__parameters: ..."'),
-    (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS accepts none'),
+    (b'strapdown:\n  ros__parameters: {rate_hz: *x}', 'has an alias at line 2; ROS allows none'),
     (b'/**:\n  ros__parameters: {rate_hz: [1.0, 2]}', "has '2' in a list of numbers with a point "
      "at line 2, 'rate_hz'; ROS expects values of one type, such as [1.0, 0.0, 0.0]"),
     (b'/**:\n  ros__parameters: {rate_hz: }', 'has no value at line 2; expected one'),

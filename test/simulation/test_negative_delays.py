@@ -41,8 +41,8 @@ def test_the_command_writes_the_run_and_says_what_is_missing(tmp_path, capsys):
              for word in ('-p', f'{name}:={value}')]
     assert main(['simulate', *words, '-o', str(tmp_path / 'run')]) == 0
     said = ' '.join(capsys.readouterr().out.split())
-    assert ('the last 3 readings are left out: a channel of negative delay would need the truth '
-            'from beyond the end of the run') in said
+    assert ('the last 3 readings are left out, because a channel with a negative delay needs the '
+            'truth after the end of the run') in said
     rows = json.loads((tmp_path / 'run' / 'summary.json').read_text())
     assert [row['name'] for row in rows][-2:] == ['max |dN - twin|', 'max |dE - twin|']
 

@@ -124,7 +124,7 @@ def test_unstable_speeds_are_refused():
     """Unstable speeds are refused in a table and in the search."""
     with pytest.raises(ValueError, match='RK4 step is 0.75 ms, at which the gyro is unstable'):
         study_curve(read('speed', 'curve_values:=[340.0]'))
-    with pytest.raises(ValueError, match='speed_hz is 230, at which RK4 with 2 ms grows'):
+    with pytest.raises(ValueError, match='speed_hz is 230 Hz, at which RK4 with a step of 2 ms'):
         stability_limits(PRESETS['sapegin_2016'], 2e-3)
 
 

@@ -106,25 +106,26 @@ def _record(chosen, console, note):
     given = arguments.parameter_paths(chosen)
     if chosen.source is None:
         if chosen.topic is not None:
-            raise ValueError(f'--topic is {chosen.topic}; expected a bag as SOURCE with it')
+            raise ValueError(f'--topic is {chosen.topic}, but there is no SOURCE; expected a bag')
         settings = parameter_files.read(given, chosen.param)
         sensor = settings.imu_sensor
         if sensor.gyro.model == 'ideal' and with_errors(sensor) is None:
-            raise ValueError(f'the instrument of the parameters is perfect; {EXPECTED}')
+            raise ValueError(f'the instrument of the parameters has no errors; {EXPECTED}')
         length_s = DURATION_S if chosen.duration is None else chosen.duration
         names = [path.stem for path in given] or ['the default parameters']
         return _simulated(settings, length_s, console), settings, ', '.join(names)
     source = Path(chosen.source)
     if chosen.duration is not None:
-        raise ValueError(f'--duration is {chosen.duration:g}; expected no SOURCE with it')
+        raise ValueError(f'--duration is {chosen.duration:g}, but a SOURCE is given; expected '
+                         'only one of them')
     if (source / storage.ARRAYS).is_file():
         if chosen.topic is not None:
             raise ValueError(f'--topic is {chosen.topic}, but {source} is a run; expected a bag')
         settings = parameter_files.read([source / storage.PARAMETERS, *given], chosen.param)
         kind = settings.motion_generator.motion.kind
         if kind != 'static':
-            note(f'{source}: the motion is {kind}, not static: its own Allan deviation is in the '
-                 'record')
+            note(f'{source}: the motion is {kind}, not static; the Allan deviation contains the '
+                 'motion as well')
         return storage.read_imu(source), settings, source.name
     if not source.exists() or not is_bag(source):
         raise ValueError(f'{source} is neither a run of "ins_sim simulate" ({storage.ARRAYS}) nor '

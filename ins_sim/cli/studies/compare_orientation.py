@@ -39,8 +39,8 @@ def run(chosen):
             for axis, name in enumerate(('east', 'north', 'up'))]
     rows += [(f'max |d{name}|', 'm', [r.position[axis] for r in results])
              for axis, name in ((1, 'N'), (0, 'E'))]
-    rows.append(('off the quaternion', 'deg', [math.degrees(r.apart) for r in results]))
-    rows.append(('CPU of a step', 'us', [1e6 * r.step_s for r in results]))
+    rows.append(('angle from the quaternion', 'deg', [math.degrees(r.apart) for r in results]))
+    rows.append(('CPU time per step', 'us', [1e6 * r.step_s for r in results]))
     for name, unit, values in rows:
         table.add_row(name, unit, *map(number_text, values))
     console.print(table)

@@ -47,7 +47,8 @@ def run(chosen):
     settings = arguments.read_aided_settings(chosen, SHIPPED)
     kind = settings.simulation.motion_generator.motion.kind
     if kind != 'guided':
-        raise ValueError(f'motion.kind is {kind}; expected guided, which the solution steers')
+        raise ValueError(f'motion.kind is {kind}; expected guided, a motion steered by the '
+                         'solution')
     loop, console = study_loop(settings), PlainConsole()
     generator = settings.simulation.motion_generator
     if warning := margin_sentence(generator.guidance, generator.motion.guided):

@@ -1,8 +1,8 @@
 """
 Reduce the number of points of a curve for drawing without losing its extremes.
 
-A curve is divided into stretches with equal numbers of points. Of each stretch the first and last
-points and those with the smallest and largest x and y are kept, in their order. A spike of a
+A curve is divided into stretches with equal numbers of points. The first and last points of each
+stretch and those with the smallest and largest x and y are kept, in their order. A spike of a
 single sample therefore stays visible. If a stretch is not wider than a pixel, the curve looks the
 same as with all points.
 """

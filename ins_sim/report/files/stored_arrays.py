@@ -59,7 +59,7 @@ def _check_size(archive, names):
     packed, size = (sum(getattr(info, key) for info in members)
                     for key in ('compress_size', 'file_size'))
     if size > max(_FREE, _RATIO * packed):
-        raise ValueError(f'{members[0].filename} and the others have {packed} bytes, which '
+        raise ValueError(f'{members[0].filename} and the other arrays have {packed} bytes, which '
                          f'unpacks to {size}')
 
 
@@ -74,7 +74,8 @@ def _member(archive, name):
         shape, fortran, dtype = read(stream)
         size = math.prod(shape) * dtype.itemsize
         if dtype.hasobject or min(shape, default=0) < 0 or size > info.file_size:
-            raise ValueError(f'{name} says it has {shown(shape)} of {dtype}, more than there is')
+            raise ValueError(f'{name} states a shape of {shown(shape)} of {dtype}, which is more '
+                             'than the file contains')
         data = stream.read(size)
     if len(data) != size:
         raise ValueError(f'{name} ends too early')

@@ -52,7 +52,7 @@ def aided_chart(title, flown, sources, gate_probability):
 
 
 def _errors(t, errors, silent, x_label, span, field, label, components, units):
-    """Return the panel of errors, and of the bands in which the filter believes them."""
+    """Return the panel of errors and of the three-sigma bands of the filter."""
     values, sigmas = getattr(errors, field), getattr(errors, f'{field}_sigma')
     # The vertical channel is often held by the altimeter; its errors are then not shown.
     shown = [axis for axis in components if axis < 2 or len(components) == 1

@@ -53,10 +53,10 @@ def order(rows):
 def answer(rows, duration_s, rate_hz):
     """Return two sentences saying which motion is best."""
     best = order(rows)[0]
-    return (f'Of the motions compared {best.motion} shows delays best: '
-            f'{best.worst_us:.3g} us a channel ({", ".join(best.shown)}) and '
-            f'{best.worst_us * math.sqrt(2.0):.3g} us a difference of two in {duration_s:g} s at '
-            f'{rate_hz:g} Hz. The standard deviation falls with the angular acceleration and with '
+    return (f'Of the motions compared, {best.motion} determines delays best: the standard '
+            f'deviation is {best.worst_us:.3g} us for a channel ({", ".join(best.shown)}) and '
+            f'{best.worst_us * math.sqrt(2.0):.3g} us for the difference of two, in '
+            f'{duration_s:g} s at {rate_hz:g} Hz. It falls with the angular acceleration and with '
             'the square root of the time, so rock as fast as the bench allows.')
 
 
@@ -76,7 +76,8 @@ def _bars(rows, noise):
         Panel((Bars(np.array([row.worst_us for row in rows]), tuple(
             f'{row.motion} ({", ".join(row.shown) or "not observable"})' for row in rows)),),
             'standard deviation of a delay [us]', '', x_scale=LOG),),
-        caption='In brackets the channels whose delays show; the bar is of the worst of them.')
+        caption='The channels with an observable delay are in brackets; the bar shows the largest '
+        'standard deviation among them.')
 
 
 def _directions(single_sigma, noise):
@@ -92,8 +93,9 @@ def _directions(single_sigma, noise):
                                     f'diagonals: {best:.3g} us', BLACK, TRIANGLE, 7.0)),
                            'azimuth of the axis in the body, from forward to the left [deg]',
                            'elevation of the axis [deg]'),),
-                 caption=f'{noise}. Axes with {CAP * best:.3g} us or more are drawn alike: a '
-                 'channel whose axis the rocking does not turn about shows no delay.')
+                 caption=f'{noise}. Axes with {CAP * best:.3g} us or more have the same colour. '
+                 'The delay of a channel is not observable if the rocking does not rotate the '
+                 'body about the axis of this channel.')
 
 
 def _speed(sweep, noise):

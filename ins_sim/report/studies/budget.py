@@ -248,8 +248,8 @@ def budget_notes(linear, compared, beside):
         left_out = not_compared(linear, beside)
         if left_out:
             notes.append(f'{left_out} of the {len(beside.t_s)} instants of the ensemble are left '
-                         f'out: the budget, which divides the run by {INTERVALS}, has none then, '
-                         'or fewer than 2 runs count.')
+                         'out: they are not among those of the budget, which divides the run into '
+                         f'{INTERVALS} intervals, or fewer than 2 runs have not diverged.')
         if any(source.triad is None for source in linear.random):
             notes.append('The runs have no random initial errors: the comparison leaves the '
                          'standard deviations of initial.* out of the budget.')
@@ -263,8 +263,8 @@ def _ensemble_note(compared, beside):
                 f'{", ".join(map(str, beside.diverged[:MOST_NAMED]))}'
                 + (' and others.' if len(beside.diverged) > MOST_NAMED else '.'))
     if not compared:
-        return (f'The ensemble of {beside.runs} runs is not compared: no random error of the '
-                f'budget moves a quantity.{lost}')
+        return (f'The ensemble of {beside.runs} runs is not compared, because no quantity of the '
+                f'budget has a random error.{lost}')
     off = [found.name for found in compared if found.differs.any()]
     told = ('agrees with the budget: all ratios are inside their 99.9 % interval' if not off else
             f'is outside of the 99.9 % interval of the budget in {", ".join(off)}')

@@ -33,9 +33,9 @@ def read_study(folder, settings):
     other = [node for node in ('motion_generator', 'imu_sensor', 'strapdown')
              if getattr(_drawn_alike(theirs), node) != getattr(_drawn_alike(settings), node)]
     if other:
-        raise ValueError(f'{folder} has other settings of {", ".join(other)} than the budget; '
-                         'expected the same values, except for the seed: use --params-file '
-                         f'{folder / PARAMETERS}')
+        raise ValueError(f'{folder}: the settings of {", ".join(other)} differ from those of the '
+                         'budget; expected the same values, except for the seed: use '
+                         f'--params-file {folder / PARAMETERS}')
     try:
         arrays = read_arrays(path, BY_INSTANT)
         runs = read_arrays(path, {'runs': ('i', (None,))})['runs']

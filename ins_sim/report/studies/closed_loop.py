@@ -90,8 +90,8 @@ def flights_table(title, rows):
         title, ('with', *heads) if varied else heads,
         tuple((r.condition, *row) if varied else row for r, row in zip(rows, cells)),
         'half the range of beta, deg, and of z, m, over the last 30 %; rad/s; z at the end, m; '
-        'second the same of the lateral channel alone, in brackets what is published '
-        f'(<{QUIET_DEG}: quiet)')
+        'the second values are those of the lateral channel alone, the published ones are in '
+        f'brackets (<{QUIET_DEG}: quiet)')
 
 
 def _cell(row, name):
@@ -125,14 +125,15 @@ def show_table(table, console):
 def flights_answer(rows):
     """Return a sentence about LoopRows: how many end quiet, and which oscillates most."""
     quiet = [r for r in rows if r.beta_deg < QUIET_DEG]
-    text = (f'{len(quiet)} of {len(rows)} flights end quiet (the sideslip swings by less than '
+    text = (f'{len(quiet)} of {len(rows)} flights end quiet (amplitude of the sideslip below '
             f'{QUIET_DEG} deg)')
     if len(quiet) == len(rows):
         return f'{text}.'
     most = max(rows, key=lambda r: r.beta_deg)
     condition = f', {most.condition}' if most.condition else ''
-    return (f'{text}; of the others {most.case} at k_z = {most.k_z:g}{condition} swings most: '
-            f'{most.beta_deg:.2g} deg of sideslip and {most.swing_m:.3g} m to either side.')
+    return (f'{text}; of the others, {most.case} at k_z = {most.k_z:g}{condition} oscillates '
+            f'most, with amplitudes of {most.beta_deg:.2g} deg in sideslip and '
+            f'{most.swing_m:.3g} m.')
 
 
 def limits_answer(rows):

@@ -79,8 +79,8 @@ def map_answer(curves):
         off = np.concatenate([_inside(c.flown[start]) - _inside(c.linear) for c in curves])
         off = off[np.isfinite(off)]
         if len(off):
-            words.append(f'from {start:g} m between {off.min():+.3f} and {off.max():+.3f}')
+            words.append(f'from {start:g} m by {off.min():+.3f} to {off.max():+.3f}')
     if not words:
         return 'On the map the loop is stable throughout.'
-    return ('On the map the limit of k_z by flights is off the linear one, of those started '
+    return ('On the map the limit of k_z by flights differs from the linear one: in flights '
             + ', '.join(words) + '.')

@@ -117,12 +117,12 @@ def _alike(channel):
         factor = amount / abs(value * names[first][1])
         if len(parts) == 1:
             if not (first == DELAY and channel.refused):
-                yield f'{channel.axis}: this motion does not show the {names[first][0]}'
+                yield f'{channel.axis}: this motion does not determine the {names[first][0]}'
             continue
         amounts = ' with '.join(f'{names[k][0]} {v * names[k][1] * factor:.3g} {names[k][2]}'
                                 for k, v in parts)
-        yield (f'{channel.axis}: cannot be told apart: {amounts} together leave the readings '
-               'unchanged')
+        yield (f'{channel.axis}: these values cannot be distinguished, because together they '
+               f'leave the readings unchanged: {amounts}')
 
 
 def answer(triad, known_us=None):
@@ -137,7 +137,7 @@ def answer(triad, known_us=None):
                          for c in shown)
         text += (f' The bandwidth causes {made} us of this; {left} us of delay remain.')
     if known_us is not None:
-        text += ' Set in the run: ' + ', '.join(
+        text += ' The delays in the settings of the run are ' + ', '.join(
             f'{c.axis} {d:g}' for c, d in zip(triad.channels, known_us)) + ' us.'
     return text
 
@@ -189,7 +189,8 @@ def _hundredths(value):
 def error_rows(triad):
     """Return the heads and rows of the table of all other values, texts."""
     found = [r for r in found_values(triad) if r.name != 'delay and lag']
-    rows = [(r.axis, r.name, number(r.value, r.sigma) if r.told else 'not told by this motion',
+    rows = [(r.axis, r.name,
+             number(r.value, r.sigma) if r.told else 'not determined by this motion',
              r.unit) for r in found]
     return ('channel', 'error', 'estimate', 'unit'), tuple(rows)
 

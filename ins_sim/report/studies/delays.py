@@ -48,9 +48,9 @@ def _drifts(runs):
     return PageTable('Drift of the attitude',
                      ('run', 'axis', 'predicted [deg/h]', 'measured [deg/h]',
                       'without delays [deg/h]', 'published [deg/h]'), tuple(rows),
-                     'The least-squares slope of the inertial attitude error, of its largest '
-                     'component. Of a detuned run the error swings, and the slope is that of the '
-                     'part of a swing that the run covers.')
+                     'The least-squares slope of the largest component of the inertial attitude '
+                     'error. The error of a detuned run oscillates; its slope applies to the part '
+                     'of the oscillation within the run.')
 
 
 def _drift_text(drift):
@@ -119,9 +119,9 @@ def _by_channel(result):
              for k, name in enumerate(ENU)]
     return PageTable(f'One microsecond of delay of one gyro: {names.motion_name(run.settings)}',
                      ('figure', 'unit', 'x', 'y', 'z'), tuple(rows),
-                     'Error and drift of any three delays are x times the delay of x, plus y '
-                     'times that of y, plus z times that of z; the largest error of a sum is at '
-                     'most the sum of the largest.')
+                     'Multiply each column by the delay of its gyro and add the three: this gives '
+                     'error and drift for any three delays. The sum of the largest errors is an '
+                     'upper bound.')
 
 
 def _numbers(per_s):
@@ -179,7 +179,7 @@ def study_notes(results):
         notes.append(NO_CURVES)
     if any(result.map is not None for result in results):
         notes.append('The maps neglect the rotation of the Earth, which changes the largest '
-                     'drift by 1e-4 of itself.')
+                     'drift by a relative 1e-4.')
     return notes
 
 
@@ -189,7 +189,7 @@ def study_charts(results):
 
 
 def study_page(results, charts, tables, files):
-    """Return the Page; files: {name: what is in it} beside it."""
+    """Return the Page; ``files`` describes the files next to it, {name: content}."""
     return Page(TITLE, answer(results), tuple(charts), tuple(tables), tuple(study_notes(results)),
                 files=files)
 

@@ -59,7 +59,7 @@ class FilterRow:
 
 
 def filter_row(case, flown):
-    """Return the FilterRow of a FilterCase and its list of FilterFlight, one a flight."""
+    """Return the FilterRow of a FilterCase and its list of FilterFlight, one per flight."""
     ends = np.array([f.horizontal[-1] for f in flown])
     sigmas = np.array([np.hypot(*f.sigma[-1, :2]) for f in flown])
     nis = np.concatenate([f.nis for f in flown])

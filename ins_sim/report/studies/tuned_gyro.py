@@ -65,7 +65,7 @@ def limits_sentence(settings, limits):
     low, high = ('no limit' if limit is None else f'{limit:.1f}' for limit in limits)
     paper = settings.paper_limits_hz
     return (f'RK4 at {settings.step_ms:g} ms is stable from {low} to {high} Hz'
-            + ('; the paper: {:g} to {:g} Hz'.format(*paper) if paper else ''))
+            + ('; published: {:g} to {:g} Hz'.format(*paper) if paper else ''))
 
 
 def study_chart(name, settings, curve, cells, limits=()):
@@ -128,11 +128,12 @@ def _answer(study):
     what = SWEEPS[settings.sweep].partition(' [')[0]
     unit = SWEEPS[settings.sweep].partition('[')[2].rstrip(']')
     text = (f'A roll of {settings.amplitude_deg:g} deg is recovered as {worst.poisson_deg:.3f} '
-            f'deg at a {what} of {worst.value:g} {unit}, the worst of {len(cells)}')
+            f'deg at a {what} of {worst.value:g} {unit}, the least accurate of {len(cells)} '
+            'values')
     printed = [c for c in cells if c.paper_deg is not None]
     if printed:
         off = max(abs(c.poisson_deg - c.paper_deg) for c in printed)
-        text += f'; the paper is met within {off:.2g} deg'
+        text += f'; the published values are reproduced within {off:.2g} deg'
     if study.limits:
         text += f'. {limits_sentence(settings, study.limits)}'
     return f'{text}.'

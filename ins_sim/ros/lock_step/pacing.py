@@ -83,7 +83,7 @@ class LivePace(Pace):
         """Refuse a factor of 0 in a run without lock-step."""
         if settings.pacing.waits and not self._waits:
             raise ValueError('pacing.real_time_factor is 0 without pacing.lock_step; expected '
-                             'more than 0: lock-step begins with the run or not at all')
+                             'more than 0, because lock-step cannot be switched on during a run')
 
     def effective_ns(self, name):
         """Return the motion time of the next sample, ns, or None before the first one."""

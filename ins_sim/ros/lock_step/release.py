@@ -1,4 +1,8 @@
-"""Send messages at once or, in lock-step, as the consumers acknowledge (truth_adapter)."""
+"""
+Send the messages of truth_adapter immediately or, in lock-step, at the pace of its consumers.
+
+In lock-step a sample is sent when the consumers have acknowledged enough of the earlier ones.
+"""
 
 from bisect import bisect_right
 from collections import deque

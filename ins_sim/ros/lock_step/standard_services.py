@@ -90,7 +90,7 @@ class StandardServices:
             generator.end()
             return self._answer(response)
         if wanted == self._state:
-            return self._answer(response, 'it is in that state already',
+            return self._answer(response, 'the simulation is already in that state',
                                 type(response).ALREADY_IN_TARGET_STATE)
         if wanted == states.STATE_STOPPED:
             generator.pause(True)
@@ -108,7 +108,7 @@ class StandardServices:
         generator = self._generator
         state = generator.monitor.state
         if state != 'paused':
-            return self._answer(response, f'it is {state}; expected paused',
+            return self._answer(response, f'the simulation is {state}; expected paused',
                                 self._codes.RESULT_OPERATION_FAILED)
         if not 1 <= request.steps <= MOST_STEPS:
             return self._answer(response, f'steps is {request.steps}; expected 1 to {MOST_STEPS}')
@@ -124,7 +124,7 @@ class StandardServices:
         request_class = type(request)
         scope = request.scope or request_class.SCOPE_ALL
         if not scope & (request_class.SCOPE_TIME | request_class.SCOPE_STATE):
-            return self._answer(response, 'nothing was spawned; expected the scope of time or of '
-                                'the state', self._codes.RESULT_FEATURE_UNSUPPORTED)
+            return self._answer(response, 'the scope contains neither time nor state; expected at '
+                                'least one of them', self._codes.RESULT_FEATURE_UNSUPPORTED)
         self._generator.reset()
         return self._answer(response)

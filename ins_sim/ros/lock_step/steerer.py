@@ -126,18 +126,18 @@ class Steerer:
         frames = self._text.strings(data)
         if frames != self._frames:
             raise ValueError(f'{self._name} has the frames {frames[0]!r} and {frames[1]!r}; '
-                             f'expected {self._frames[0]!r} and {self._frames[1]!r}: the vehicle '
-                             'is not steered by it')
+                             f'expected {self._frames[0]!r} and {self._frames[1]!r}; the message '
+                             'is not used for steering')
         newest_ns, length = self._newest_ns, math.hypot(*pose[1])
         if abs(length - 1.0) > UNIT:
             raise ValueError(f'{self._name} at {seconds(stamp_ns)} has an orientation of length '
-                             f'{length:.6g}; expected a quaternion of length 1: the vehicle is '
-                             'not steered by it')
+                             f'{length:.6g}; expected a quaternion of length 1; the message is '
+                             'not used for steering')
         if t_ns > self._motion.known_ns + self._motion.period_ns:
-            raise ValueError(f'{self._name} has the stamp {seconds(stamp_ns)}, when the truth is '
-                             f'at {seconds(self._motion.known_ns + self._epoch_ns)}; expected a '
-                             'solution of this run that is not ahead of the truth; the message '
-                             'was dropped')
+            raise ValueError(f'{self._name} has the stamp {seconds(stamp_ns)}, but the truth has '
+                             f'only reached {seconds(self._motion.known_ns + self._epoch_ns)}; '
+                             'expected a solution of this run that is not ahead of the truth; '
+                             'the message was dropped')
         if newest_ns is not None and t_ns <= newest_ns:
             if t_ns < newest_ns:
                 raise ValueError(f'{self._name} jumps back from '
@@ -170,10 +170,10 @@ class Steerer:
         if now - self._since < MISSING_S / 2 ** self._misses:
             return False
         goes_on = 'the last one is used' if self.heard else 'the vehicle flies straight'
-        self._fault(f'no solution of {seconds(wanted_ns + self._epoch_ns)} on {self._name} in '
-                    f'{MISSING_S / 2 ** self._misses:.3g} s; expected that of every control '
-                    'instant (does the node of guidance.topic run? Where samples are lost, '
-                    f'guidance.latency_s must be larger): {goes_on}')
+        self._fault(f'no solution for {seconds(wanted_ns + self._epoch_ns)} on {self._name} in '
+                    f'{MISSING_S / 2 ** self._misses:.3g} s; expected a solution for every '
+                    'control instant: is the node that publishes guidance.topic running? If '
+                    f'samples are lost, increase guidance.latency_s; {goes_on}')
         self._misses, self._since = min(self._misses + 1, 60), None
         self.late += 1
         return True
@@ -184,8 +184,8 @@ class Steerer:
             self._began_s = now
         if not self.heard and NO_SOLUTION not in self._told and now - self._began_s > MISSING_S:
             self._told.add(NO_SOLUTION)
-            self._fault(f'no message on {self._name} in {MISSING_S:g} s; expected a solution to '
-                        'steer by (guidance.topic): the vehicle flies straight until one comes')
+            self._fault(f'no message on {self._name} in {MISSING_S:g} s; expected solutions on '
+                        'guidance.topic; the vehicle flies straight until one arrives')
 
     def _look_for_lateness(self, wanted_ns):
         """Report, once, that solutions have been late for longer than the autopilot's timeout."""
@@ -198,8 +198,8 @@ class Steerer:
             self._told.add(LATE)
             self._fault(f'solutions on {self._name} have been late for '
                         f'{self._timeout_ns * 1e-9:g} s, now by {behind_ns * 1e-9:.3g} s; '
-                        'expected that of every control instant (guidance.latency_s says how late '
-                        'it may be): the last one is used')
+                        'expected a solution for every control instant, late by at most '
+                        'guidance.latency_s; the last one is used')
 
     def _steer(self):
         """Compute the command of the next control period, apply it and publish it."""
@@ -208,8 +208,8 @@ class Steerer:
             command = steering.command(t_ns)
         except Exception as error:
             # The autopilot may be code of the user.
-            self._fault(f'the autopilot raises {type(error).__name__} ({error}) at '
-                        f'{seconds(t_ns)}; expected a command: the vehicle flies straight')
+            self._fault(f'the autopilot raised {type(error).__name__} ({error}) at '
+                        f'{seconds(t_ns)}; expected a command; the vehicle flies straight')
             steering.give_up(NO_COMMAND)
             command = SteeringCommand(t_ns, 0.0, 0.0, 0.0, NO_COMMAND)
         self._command = command
@@ -225,7 +225,7 @@ class Steerer:
         """Engage the autopilot or disengage it; return the text of the response."""
         if not on:
             self.steering.disengage()
-            return 'disengaged: it flies straight'
+            return 'disengaged: the vehicle flies straight'
         t_ns = self._motion.known_ns
         self.steering.engage(t_ns)
         return 'engaged' + (', from the end of the turn on' if self.steering.in_turn(t_ns) else '')

@@ -17,7 +17,7 @@ from ins_sim.settings.guidance import check_control_rate
 
 BLOCK = 256
 STAMP_END_S = STAMP_END_NS // SECOND
-# Part of an endless run whose places are checked before the start, s.
+# Length of the part of an endless run whose positions are checked before the start, s.
 LOOK_S = 86400.0
 # Margin for the stamps of sensor samples, which latency and jitter make later than the truth, ns.
 END_NS = 10 * SECOND
@@ -69,8 +69,8 @@ class TruthSource:
         self.endless, self.count = not length_s, last_ns // self.dt_ns + 1
         if self.count < 1:
             raise ValueError(f'the first stamp is {last_s:g} s; expected less than '
-                             f'{STAMP_END_S - END_NS // SECOND} s in a run without duration_s: '
-                             'there the stamps of ROS end')
+                             f'{STAMP_END_S - END_NS // SECOND} s in a run without duration_s, '
+                             'because it would exceed the largest stamp of ROS')
         self._transforms = None
         if settings.tf.source == 'truth':
             self._transforms = TransformWriter(topics.TRUTH_ODOMETRY.named(names).frames).pack

@@ -1,1 +1,1 @@
-"""The nodes, one a file; ``stage`` and ``following`` are their base classes."""
+"""The nodes, one per file; ``stage`` and ``following`` are their base classes."""

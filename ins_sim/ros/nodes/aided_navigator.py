@@ -133,7 +133,7 @@ class AidedNavigatorNode(NavigatorNode):
             self.fault(str(error))
             return
         if source in self.stage.silent:
-            self.get_logger().info(f'{source} delivers again')
+            self.get_logger().info(f'fixes of {source} arrive again')
         for fix in fixes:
             self._health.came(source, fix)
             self.publish(self.push(self.stage.push_fix, (source, fix)))
@@ -145,8 +145,8 @@ class AidedNavigatorNode(NavigatorNode):
         awaited = self.stage.awaited
         for source in awaited:
             self.fault(f'no fix of {source} in {MISSING_S:g} s; expected one for every '
-                       f'{"window" if source == METER else "instant"}: continuing without it '
-                       'until it delivers again')
+                       f'{"window" if source == METER else "instant"}; continuing without this '
+                       'sensor until its fixes arrive again')
             self.publish(self.push(self.stage.go_on_without, (source,)))
         if not awaited and not self.stage.waiting:
             self._odom.miss()

@@ -80,6 +80,7 @@ class GnssNode(StageNode):
     def _on_outage(self, request, response):
         self._receiver.force_outage(request.data)
         response.success = True
-        response.message = 'no fix from now on' if request.data else 'fixes by the schedule'
+        response.message = ('no fixes from now on' if request.data else
+                            'fixes again, except during gnss.outages')
         self.get_logger().info(response.message)
         return response

@@ -34,7 +34,8 @@ class ImuSensorNode(StageNode):
         settings = self.settings
         motion = None
         if settings.source == 'motion':
-            # Imported lazily: a node that receives its motion as messages starts faster without.
+            # Imported lazily: a node that receives the motion as messages starts faster without
+            # it.
             from ins_sim.io.motion import read_motion
             motion = read_motion(settings)
         return make_imu(settings, motion)
@@ -151,11 +152,11 @@ class ImuSensorNode(StageNode):
 
     def _on_fault(self, request, response):
         if not self.stage.pair.has_fault:
-            response.message = ('gyro.dtg.fault.channel is none; expected the channel that is to '
-                                'have the fault')
+            response.message = ('gyro.dtg.fault.channel is none; expected the name of the channel '
+                                'to be disturbed')
             return response
         self.stage.pair.force_fault(request.data)
         response.success = True
         response.message = (f'{self.settings.gyro.dtg.fault.channel} '
-                            f'{"has its fault" if request.data else "is healthy"}')
+                            f'{"has a fault" if request.data else "is healthy"}')
         return response

@@ -30,7 +30,7 @@ from ..transport.qos_overrides import advertise
 
 SERVE_S = 0.01
 POLL_S = 2e-4
-# Serving callbacks may take one part in SHARE of the time; the pause between is at most REST_S.
+# Serving callbacks may use 1/SHARE of the time, with pauses of at most REST_S in between.
 SHARE, REST_S = 30.0, 0.2
 BURST = 50
 CLOCK_HZ = 100.0
@@ -51,7 +51,7 @@ class MotionGeneratorNode(Node):
         self.settings = declare_settings(self, MotionGeneratorSettings)
         pacing, depth = self.settings.pacing, self.settings.topics.depth
         self._source = TruthSource(self.settings)
-        # Created first: whoever has discovered the truth knows that there is an announcement.
+        # Created first: a node that has discovered the truth then knows that a run is announced.
         self._announcements = qos.make_publisher(self, topics.RUN, depth)
         self._announcements.publish(self._source.announcement.pack())
         self._lock = None
@@ -224,8 +224,8 @@ class MotionGeneratorNode(Node):
         self.get_logger().info(f'finished after {self._next} samples')
         if self._source.endless:
             self.get_logger().warning(
-                f'the stamps of ROS end at {STAMP_END_S} s (2038-01-19, counted from 1970), and '
-                'the endless run with them; expected an earlier time.epoch_s for a longer one')
+                f'the run has reached the largest stamp of ROS, {STAMP_END_S} s (2038-01-19, '
+                'counted from 1970), and ends; expected an earlier time.epoch_s for a longer run')
         if self.settings.exit_at_end:
             stop.request()
 

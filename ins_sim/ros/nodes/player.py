@@ -44,9 +44,9 @@ class PlayerNode(Node):
         self._playing = playing = Playing(path, options)
         log = self.get_logger()
         if playing.bag.cut:
-            log.warning(f'{path} is cut: {playing.bag.cut}')
+            log.warning(f'{path} is incomplete: {playing.bag.cut}')
         for name in playing.left_out:
-            log.info(f'{name} is left out: it is published or heard by the player itself')
+            log.info(f'{name} is not played, because the player itself publishes or reads it')
         self._data_publishers, self._publish = [], {}
         for name, channel in list(playing.channels.items()):
             try:
@@ -62,7 +62,7 @@ class PlayerNode(Node):
                     self._data_publishers.append(publisher)
                 self._publish[name] = publisher.publish
         if not self._publish:
-            raise ValueError(f'nothing of {path} can be played')
+            raise ValueError(f'no topic of {path} can be played')
         self._lock = None
         if options.required:
             self._lock = LockStep(options.required, options.window, options.timeout_s)
@@ -80,7 +80,7 @@ class PlayerNode(Node):
 
     def _make_publisher(self, channel):
         if channel.encoding != 'cdr':
-            raise ValueError(f'it is serialized as {channel.encoding!r}; expected cdr')
+            raise ValueError(f'messages are serialized as {channel.encoding!r}; expected cdr')
         name = channel.name if channel.name in ABSOLUTE else channel.name.lstrip('/')
         profile = qos.recorded_profile(bag_qos.read_profiles(channel.qos), DEPTH)
         if profile.durability == qos.LATCHING:
@@ -148,7 +148,7 @@ class PlayerNode(Node):
             begin_ns = self._playing.first_ns - round(self._options.start_s * SECOND)
             start_s = (log_ns - begin_ns) // 1_000_000 / 1000
             self.get_logger().warning(
-                f'nothing was logged for {(log_ns - before_ns) / SECOND:.3f} s from '
+                f'the bag has no message for {(log_ns - before_ns) / SECOND:.3f} s from '
                 f'{before_ns / SECOND:.3f} s on: waiting {wait_s:.0f} s (--start {start_s:.3f} '
                 'begins after the gap, --duration ends before it, --rate shortens it)')
 

@@ -30,7 +30,8 @@ ABSENT_S = 2.0
 # When all topics are recorded: the first lock-step sample is acknowledged only after no new topic
 # has appeared for this time, s.
 SETTLE_S = 1.0
-# Topics of this package are subscribed to at once, so that their first messages are not missed.
+# Topics of this package are subscribed to before they have a publisher, so that their first
+# messages are not missed.
 OURS = (topics.RUN, *topics.DATA, *topics.BESIDE, topics.CLOCK_TOPIC, *topics.AIDING,
         *topics.GUIDANCE)
 
@@ -163,7 +164,7 @@ class RecorderNode(Node):
             return
         elif others or weaker:
             why = ('a later publisher has another type' if others else
-                   'a later publisher offers less than the first ones') + ' and is not heard'
+                   'a later publisher offers a weaker quality of service') + ' and is not recorded'
         else:
             return
         if track.name not in self._weak:
@@ -194,7 +195,7 @@ class RecorderNode(Node):
                 lost += f' (of {gaps.publishers} publishers)'
             more = f', {track.repeated} repeated' if track.repeated else ''
             if gaps.before:
-                more += f', {gaps.before} sent before it was heard'
+                more += f', {gaps.before} sent before the recorder had subscribed'
             missing, step_ns = track.holes.count()
             if missing and track.name != self.resolve_topic_name(topics.ACK.name):
                 more += (f', {missing} missing of {missing + track.count} at '

@@ -87,7 +87,7 @@ class StageNode(Node):
         return self._announced.run is not None
 
     def nobody_waits(self):
-        """Return whether nobody waits for the acknowledgements of this node."""
+        """Return whether no node waits for the acknowledgements of this node."""
         return not self._ack_publisher.get_subscription_count()
 
     def hand_queues(self):

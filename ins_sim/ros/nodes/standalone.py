@@ -127,8 +127,8 @@ class StandaloneDrive:
         missing = [name for name, (first,) in (('angular_velocity', rate),
                                                ('linear_acceleration', force)) if first == -1.0]
         if missing:
-            self._node.monitor.fault(f'{self.driver.name} says by a covariance of -1 that it has '
-                                     f'no {" and no ".join(missing)} (REP-145); expected both')
+            self._node.monitor.fault(f'{self.driver.name} has a covariance of -1, which means no '
+                                     f'{" and no ".join(missing)} (REP-145); expected both')
 
     def publish(self, outputs):
         """Publish solutions, and log the notes, warnings and faults of the stage."""
@@ -151,9 +151,9 @@ class StandaloneDrive:
     def describe_reset(self):
         """Return the answer to ~/reset."""
         source = self._node.settings.initial.source
-        return f'started anew from initial.source {source}: ' + {
-            'alignment': 'expected a vehicle at rest', 'fix': 'expected fixes',
-            'given': 'expected the vehicle in the state of initial.*'}[source]
+        return f'started anew from initial.source {source}; expected ' + {
+            'alignment': 'a vehicle at rest', 'fix': 'fixes',
+            'given': 'the vehicle in the state of initial.*'}[source]
 
 
 def _is_there(topic):

@@ -46,7 +46,7 @@ class StrapdownNode(NavigatorNode):
                          published_covariance(self.settings))
 
     def _make_drive(self):
-        # Imported lazily: a strapdown beside the truth starts faster without it.
+        # Imported lazily: a strapdown that is given the truth starts faster without it.
         from .standalone import StandaloneDrive
         drive = StandaloneDrive(self)
         self.epoch_ns = 0
@@ -102,8 +102,8 @@ class StrapdownNode(NavigatorNode):
     def _on_align(self, request, response):
         if self._drive is None:
             response.success, response.message = False, (
-                'initial.source is truth, from which the solution starts; expected alignment: '
-                'nothing is aligned')
+                'initial.source is truth, so the solution starts from the truth without an '
+                'alignment; expected alignment')
         else:
             response.success, response.message = self.stage.align()
         return response

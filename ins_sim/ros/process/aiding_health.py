@@ -38,7 +38,7 @@ class AidingHealth:
                 self._reason = f'{source}: {result.reason}'
                 if result.innovation:
                     # The filter tested the fix and rejected it; it was not just missing.
-                    self._wrong = (f'{source}: the fix at {seconds(t_ns)} is not taken: '
+                    self._wrong = (f'{source}: the fix at {seconds(t_ns)} was rejected: '
                                    f'{result.reason}')
         judged.clear()
 

@@ -90,10 +90,10 @@ class AnnouncedRun:
         if known:
             node.monitor.fault(f'no message on {topics.RUN.name} in {PATIENCE_S:g} s, though it '
                                'has a publisher; expected the announcement of the run: motion '
-                               'time is the stamp itself')
+                               'time is the stamp of the messages')
         else:
-            node.get_logger().info(f'nobody announces a run on {topics.RUN.name}: motion time is '
-                                   'the stamp itself')
+            node.get_logger().info(f'no node announces a run on {topics.RUN.name}: motion time is '
+                                   'the stamp of the messages')
         return False
 
     def take(self, data):
@@ -107,7 +107,8 @@ class AnnouncedRun:
         if before is not None and run.epoch_ns != before.epoch_ns:
             self._node.monitor.fault(
                 f'{topics.RUN.name} announces a run with the epoch {seconds(run.epoch_ns)} after '
-                f'{seconds(before.epoch_ns)}; expected one generator: starting anew with it')
+                f'{seconds(before.epoch_ns)}; expected one generator: restarting with the new '
+                'epoch')
         self._settle(run)
 
     def _settle(self, run):

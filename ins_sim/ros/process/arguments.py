@@ -31,7 +31,7 @@ def answer(name, words):
         print('\n'.join(_help_lines(name)))
         return OK
     if others:
-        print(f'{name}: unknown argument {visible(others[0])}; expected ROS arguments behind '
+        print(f'{name}: unknown argument {visible(others[0])}; expected ROS arguments after '
               f'{ROS_ARGS}, such as -p NAME:=VALUE (--help lists the parameters)',
               file=sys.stderr)
         return BAD_INPUT
@@ -79,6 +79,6 @@ def _help_lines(name):
         for parameter, field in flatten(cls).items():
             unit, default = field.metadata['unit'], field.default
             shown = list(default) if isinstance(default, tuple) else default
-            later = '; can be set while it runs' if parameter in cls.SETTABLE else ''
+            later = '; can be set while the node runs' if parameter in cls.SETTABLE else ''
             yield (f'  {parameter}: {field.metadata["doc"]}{f" [{unit}]" if unit else ""} '
                    f'(default: {shown!r}{later})')

@@ -112,8 +112,8 @@ class Monitor:
         names = unused(self._node)
         if names:
             self._node.get_logger().info(
-                f'{len(names)} qos_overrides are of no publisher and no subscription of this '
-                f'node and have no effect here; the first is {short(names[0])}')
+                f'{len(names)} qos_overrides belong to no publisher or subscription of this node '
+                f'and have no effect here; the first is {short(names[0])}')
 
     @staticmethod
     def _ask(describe):

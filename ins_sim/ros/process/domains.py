@@ -21,7 +21,8 @@ def own_domain():
     """
     folder = Path(tempfile.gettempdir()) / f'ins_sim-domains-{os.getuid()}'
     folder.mkdir(exist_ok=True)
-    # Processes start their search at different domains, so that a domain is not reused at once.
+    # Processes start their search at different domains, so that a domain is not reused at the
+    # next start.
     # The operating system releases the lock when the process ends, however it ends.
     first = os.getpid() * 7 + next(_taken)
     for step in range(DOMAINS):

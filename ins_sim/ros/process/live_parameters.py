@@ -16,8 +16,8 @@ class LiveParameters:
 
     A request is checked like the settings at the start; its parameters are applied all together
     or not at all. A single number is accepted for three equal axes, and an integer for a float.
-    Spans have two lists, their begins and their ends. If only the begins are set, missing ends
-    become the latest possible instant, and surplus ends are dropped.
+    Spans have two lists, start times and end times. If only the start times are set, missing end
+    times become the latest possible instant, and surplus ones are dropped.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class LiveParameters:
         return list(found.values())
 
     def _fit_ends(self, found, starts, ends):
-        """Adjust the number of span ends if only the begins are set."""
+        """Adjust the number of end times of spans if only the start times are set."""
         given = values_of(self._node.settings)[ends]
         wanted = found[starts].value
         if found[starts].type_ == Parameter.Type.DOUBLE_ARRAY and len(wanted) != len(given):

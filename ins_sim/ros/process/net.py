@@ -9,8 +9,8 @@ def described(error):
     """Return one sentence about an exception, with the file and line that raised it."""
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return (f'{type(error).__name__} ({error}) at line {frame.lineno} of '
-            f'{Path(frame.filename).name}; what was being computed is dropped and the node '
-            'restarts: please report it')
+            f'{Path(frame.filename).name}; the current computation is discarded and the node '
+            'restarts; please report it')
 
 
 def caught(call, rescue):

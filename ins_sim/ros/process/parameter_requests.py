@@ -60,8 +60,9 @@ def _set(node, messages):
 def _read_only(node, name, names):
     settable = [one for one in names if not is_of_ros(one)
                 and not node.describe_parameter(one).read_only]
-    expected = f'one of {", ".join(settable)}' if settable else 'none of this node'
-    return f'{name} is read-only: it is taken at the start; settable while it runs: {expected}'
+    expected = f'one of {", ".join(settable)}' if settable else 'no parameter of this node'
+    return (f'{name} is read-only, because it is read at the start; can be set while the node '
+            f'runs: {expected}')
 
 
 def refused(sentence):

@@ -94,7 +94,7 @@ class MessageLosses:
                          'pacing.lock_step')
             elif lost > self._lost[name]:
                 wrong = (f'{lost - self._lost[name]} messages of {name} were lost: this node '
-                         'cannot keep up, or the transport cannot; expected a lower rate_hz or '
+                         'or the transport cannot keep up; expected a lower rate_hz or '
                          f'real_time_factor, pacing.lock_step, or a topics.depth above '
                          f'{self._depth}')
             self._lost[name], self._dropped[name] = lost, dropped

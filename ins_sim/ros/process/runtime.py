@@ -87,7 +87,7 @@ def node_main(load, args=None, **more):
         from .last_resort import exit_within
         node_class = load()
     except ImportError as error:
-        print(f'cannot import ROS 2: {error}; source a ROS 2 Jazzy or install ins_sim[ros]',
+        print(f'cannot import ROS 2: {error}; source ROS 2 Jazzy or install ins_sim[ros]',
               file=sys.stderr)
         return EXIT_PARAMETERS
     if stop:

@@ -212,8 +212,8 @@ class BagRecorder:
         track.jumped = True
         if self._report is not None:
             self._report(f'{track.name} jumps back from {track.last_ns / SECOND:.9f} s to '
-                         f'{stamp_ns / SECOND:.9f} s; by its stamps it lies among the earlier '
-                         'messages of the bag (record.log_time: received keeps the order)')
+                         f'{stamp_ns / SECOND:.9f} s; the bag sorts its messages by these stamps '
+                         '(record.log_time: received keeps the order of reception)')
 
     def _write(self, track, log_ns, data):
         self._bag.write(track.name, log_ns, data)

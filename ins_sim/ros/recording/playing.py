@@ -87,7 +87,7 @@ class Playing:
         heard = [spans[n] for n in self.channels if spans[n].count and n not in runs]
         if not heard:
             raise ValueError(f'{path} has no message on {", ".join(self.channels) or "a topic"}; '
-                             'expected something to play')
+                             'expected at least one message')
         begin, end = min(s.first_ns for s in heard), max(s.last_ns for s in heard)
         self.first_ns = begin + round(options.start_s * SECOND)
         if self.first_ns > end:
@@ -105,7 +105,7 @@ class Playing:
             if not -STAMP_END_NS <= t_ns < STAMP_END_NS:
                 raise ValueError(f'a message of {self.bag.path} was logged at {t_ns // SECOND} s; '
                                  f'expected less than {STAMP_END_NS // SECOND} s, the end of the '
-                                 f'stamps of {CLOCK}: leave --clock out')
+                                 f'stamps of {CLOCK}: omit --clock')
 
     def _find_driver(self):
         present = [n for n, count in self.counts.items()
@@ -115,7 +115,8 @@ class Playing:
                 if name.endswith('/' + topic.name):
                     return name
         if not present:
-            raise ValueError(f'{self.bag.path} has no topic with stamps; lock-step expects one')
+            raise ValueError(f'{self.bag.path} has no topic with stamps; expected one for '
+                             '--lock-step')
         return max(present, key=self.counts.get)
 
     def announcements(self):
@@ -168,7 +169,7 @@ class PlaybackStart:
         first_ns = next((s for m, s in zip(taken, stamps) if m[0] == playing.driver), None)
         if first_ns is None:
             raise ValueError(f'{playing.driver} has no message among the first {len(taken)}; '
-                             'lock-step expects one, perhaps behind another --start')
+                             'expected one for --lock-step: try another --start')
         latest = {m[0]: k for k, (m, s) in enumerate(zip(taken, stamps))
                   if s is not None and s <= first_ns}
         self.stamp_ns = first_ns

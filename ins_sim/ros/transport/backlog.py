@@ -17,7 +17,8 @@ TURN_S = 0.01
 LINGER_S = 0.003
 NAP_S = 5e-4
 BATCH = 50
-# A message that has waited for longer is dropped if nobody waits for its acknowledgement, ns.
+# A message that has waited longer than this, ns, is dropped if no node waits for its
+# acknowledgement.
 BACKLOG_NS = 5_000_000_000
 
 

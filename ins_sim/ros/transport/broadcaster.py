@@ -85,8 +85,9 @@ class Broadcaster:
                 wrong = f'{topics.TF.name}: {error}'
             else:
                 if others:
-                    wrong = (f'{topics.TF.name} places {child!r} in {others[0]!r}, and this node '
-                             f'places it in {parent!r}; expected one source of a frame: one '
-                             'tf.source in all nodes, no other localization beside it, and for '
-                             'every vehicle a frames.prefix of its own')
+                    wrong = (f'{topics.TF.name}: another node publishes {child!r} in '
+                             f'{others[0]!r}, and this node publishes it in {parent!r}; '
+                             'expected one source for each frame: the same tf.source in all '
+                             'nodes, no other localization node at the same time, and a separate '
+                             'frames.prefix for each vehicle')
         return wrong, ()

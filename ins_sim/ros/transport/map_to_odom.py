@@ -61,7 +61,8 @@ class MapToOdom:
         """Report that no free INS solution has arrived, and stop waiting until one does."""
         self._patient = False
         self._node.fault(f'no message on {topics.INS_ODOMETRY.name} in {MISSING_S:g} s; expected '
-                         'the odom of every solution (tf.source aided): no map -> odom without it')
+                         'a free INS solution for every aided one, because tf.source is aided; '
+                         'map -> odom is not published without it')
 
     def _send(self, pairs):
         for stamp_ns, solved, free in pairs:

@@ -75,8 +75,8 @@ def fly_beside(settings, motion, budget, runs):
     Return the BesideRuns. Raises ValueError for a single run, and as ``simulate_runs`` does.
     """
     if not isinstance(runs, int) or isinstance(runs, bool) or runs < 2:
-        raise ValueError(f'the number of runs is {runs!r}; expected at least 2, whose scatter is '
-                         'compared with the budget, or 0 for none')
+        raise ValueError(f'the number of runs is {runs!r}; expected at least 2, whose scatter '
+                         'is compared with the budget, or 0 for no comparison')
     every = max(1, -(-(len(budget.t_s) - 1) // INSTANTS))
     found = simulate_runs(settings, motion, range(runs),
                           navigation_start_s(settings) + budget.t_s[every::every],
@@ -147,14 +147,15 @@ def compared(budget, beside):
     if there is no common instant.
     """
     if beside.count.max() < 2:
-        raise ValueError(f'the ensemble has {beside.count.max()} run that counts; expected at '
-                         'least 2, whose scatter is compared with the budget')
+        raise ValueError(f'the ensemble has {beside.count.max()} run that has not diverged; '
+                         'expected at least 2, because their scatter is compared with the budget')
     off = _apart(budget, beside)
     common = _common(off, beside)
     if not common.any():
         raise ValueError(f'the ensemble has {len(beside.t_s)} instants from {beside.t_s[0]:g} to '
-                         f'{beside.t_s[-1]:g} s, of which none can be compared; expected some of '
-                         f'the budget, which divides the run by {INTERVALS}, with at least 2 runs')
+                         f'{beside.t_s[-1]:g} s, but none of them can be compared; expected '
+                         'instants of the budget, which divides the run into '
+                         f'{INTERVALS} intervals, with at least 2 runs')
     numbers, count = off.argmin(axis=0)[common], beside.count[common]
     t_s, mean, covariance = budget.t_s[numbers], beside.mean[common], beside.covariance[common]
     budget = without_start(budget)

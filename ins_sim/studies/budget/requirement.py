@@ -21,7 +21,7 @@ TIMES = {'s': 1.0, 'min': 60.0, 'h': 3600.0}
 STATISTICS = {'rms': None, 'cep50': 0.5, 'cep95': 0.95}
 GRAMMAR = ("QUANTITY STATISTIC NUMBER UNIT at NUMBER TIME, such as 'horizontal rms 1852 m at "
            f"3600 s', with QUANTITY one of {', '.join(QUANTITIES)}, STATISTIC one of "
-           f"{', '.join(STATISTICS)} (the latter two of horizontal), UNIT one of "
+           f"{', '.join(STATISTICS)} (cep50 and cep95 only with horizontal), UNIT one of "
            f"{', '.join(UNITS)}, and TIME one of {', '.join(TIMES)}")
 _TEXT = re.compile(r'\s*(\S+)\s+(\S+)\s+([-+.\deE]+)\s*(\S+)\s+at\s+([-+.\deE]+)\s*(\S+)\s*',
                    re.IGNORECASE)
@@ -103,8 +103,8 @@ def times_of(requirements, end_s):
     """Return the times of Requirements, s; raise ValueError if one is after end_s."""
     for requirement in requirements:
         if requirement.t_s > end_s:
-            raise ValueError(f'the requirement is {requirement.text!r}; expected a time of the '
-                             f'navigation, which ends after {end_s:g} s')
+            raise ValueError(f'the requirement is {requirement.text!r}; expected a time before '
+                             f'the end of the navigation, at most {end_s:g} s')
     return [requirement.t_s for requirement in requirements]
 
 

@@ -156,10 +156,11 @@ def _check(shows, simulation):
                          f'{" or ".join(kinds)}')
     if motion.kind == 'rocking' and motion.rocking.axis not in LEVEL:
         raise ValueError(f'motion.rocking.axis is {motion.rocking.axis} with figure rocking; '
-                         f'expected {" or ".join(LEVEL)}, a level axis past which psi turns the '
-                         'body')
+                         f'expected {" or ".join(LEVEL)}, a level axis that does not rotate with '
+                         'psi')
     if motion.kind == 'rocking' and not motion.rocking.frequency_hz:
-        raise ValueError('motion.rocking.frequency_hz is 0 with figure rocking; expected more')
+        raise ValueError('motion.rocking.frequency_hz is 0 with figure rocking; expected more '
+                         'than 0')
     if sensor.gyro.delay_us == DelaysUs():
         raise ValueError('gyro.delay_us is 0 on every axis; expected a delay on one axis or more')
     initial = simulation.strapdown.initial

@@ -146,7 +146,7 @@ def rates_map(settings):
     most = 1.5 * max(abs(psi_0), 2.0 * abs(gamma_0))
     if not most:
         raise ValueError('motion.two_axis.psi_rate_rad_s and gamma_rate_rad_s are 0 with figure '
-                         'rates; expected a motion that turns')
+                         'rates; expected at least one of them not 0')
     cells = np.arange(-CELLS, CELLS + 1) / CELLS
     psi, gamma = most * cells, 0.5 * most * cells
     near = NEAR / drift.span_s * np.linspace(-1.0, 1.0, NEAR_POINTS)

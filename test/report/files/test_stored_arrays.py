@@ -35,7 +35,8 @@ def test_the_arrays_of_a_run_come_back(tmp_path):
     (dict(imu_t_ns=np.arange(50.0)), 'imu_t_ns has the type float64'),
     (dict(imu_omega=np.ones((50, 3), dtype=complex)), 'imu_omega has the type complex128'),
     (dict(imu_omega=np.array([['x'] * 3] * 50)), 'imu_omega has the type <U1'),
-    (dict(imu_omega=np.array([{}], dtype=object)), 'imu_omega.npy says it has (1,) of object')])
+    (dict(imu_omega=np.array([{}], dtype=object)),
+     'imu_omega.npy states a shape of (1,) of object')])
 def test_other_arrays_are_named(changed, sentence, tmp_path, capsys):
     """allan names the invalid array and what is wrong with it."""
     saved(tmp_path, **changed)
@@ -50,7 +51,7 @@ def test_sizes_that_the_file_does_not_have_are_not_allocated(tmp_path):
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, {'descr': '<i8', 'fortran_order': False,
                                                   'shape': (2 ** 40,)})
-    for content, sentence in ((header.getvalue(), 'more than there is'),
+    for content, sentence in ((header.getvalue(), 'more than the file'),
                               (b'\x93NUMPY' + bytes(100_000_000), 'unpacks to'),
                               (b'', 'EOF'), (b'\x93NUMPY\x09\x00', 'has the format')):
         saved(tmp_path)

@@ -61,8 +61,8 @@ def test_the_map_draws_no_limit_where_there_is_none():
     assert isinstance(near, Markers) and near.marker == CIRCLE and near.colour == line.colour
     assert near.label == 'N 10, flown from z0 = 1 m' and far.y.tolist() == [0.9, 0.2, 0.0]
     assert map_answer(curves) == (
-        'On the map the limit of k_z by flights is off the linear one, of those started from 1 m '
-        'between +0.000 and +0.010, from 100 m between -0.300 and +0.000.')
+        'On the map the limit of k_z by flights differs from the linear one: in flights from 1 m '
+        'by +0.000 to +0.010, from 100 m by -0.300 to +0.000.')
 
 
 def test_what_the_tables_say():
@@ -70,11 +70,11 @@ def test_what_the_tables_say():
     quiet, restless = TABLE[0], next(case for case in TABLE if case.k_z == 0.17)
     rows = [loop_row(quiet, flight(0.01)), loop_row(restless, flight(8.0, 31.0), flight(7.9))]
     assert flights_answer(rows[:1]) == (
-        '1 of 1 flights end quiet (the sideslip swings by less than 0.05 deg).')
+        '1 of 1 flights end quiet (amplitude of the sideslip below 0.05 deg).')
     assert flights_answer(rows) == (
-        '1 of 2 flights end quiet (the sideslip swings by less than 0.05 deg); of the others '
-        'sliding, N 100, K_v 1 at k_z = 0.17 swings most: 8 deg of sideslip and 31 m to either '
-        'side.')
+        '1 of 2 flights end quiet (amplitude of the sideslip below 0.05 deg); of the others, '
+        'sliding, N 100, K_v 1 at k_z = 0.17 oscillates most, with amplitudes of 8 deg in '
+        'sideslip and 31 m.')
     slow = LoopFlight(T_S[:900], *(values[:900] for values in (
         flight(8.0).z, flight(8.0).beta, flight(8.0).z_estimated)))
     assert slow.frequency is None

@@ -47,8 +47,8 @@ def test_the_report_answers():
     chart = study_chart('dtg_study_speed', SETTINGS, CURVE, CELLS, (129.4, 337.4))
     page = study_page([TunedGyroStudy('dtg_study_speed', SETTINGS, CELLS, (129.4, 337.4), chart)])
     assert page.answer == (
-        'A roll of 10 deg is recovered as 9.814 deg at a rotor speed of 337 Hz, the worst of 2; '
-        'the paper is met within 0.0085 deg. RK4 at 0.75 ms is stable from 129.4 to 337.4 Hz; the '
-        'paper: 130 to 337 Hz.')
+        'A roll of 10 deg is recovered as 9.814 deg at a rotor speed of 337 Hz, the least '
+        'accurate of 2 values; the published values are reproduced within 0.0085 deg. RK4 at '
+        '0.75 ms is stable from 129.4 to 337.4 Hz; published: 130 to 337 Hz.')
     assert page.charts == (chart,) and list(page.files) == ['dtg_study_speed.png']
     assert page.tables[0].rows[0] == ('130', '9.9715', '9.9715', '9.98', '-0.0085')

@@ -144,7 +144,8 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         errors = stream.heard['aided/error/velocity']
         stream.listener.poll_until(lambda: 99 * DT in errors)
         stream.chain.wait_text(node, 'no fix of velocity_meter in 5 s; expected one for every '
-                                     'window: continuing without it until it delivers again')
+                                     'window; continuing without this sensor until its fixes '
+                                     'arrive again')
         stream.wait_ack(150 * DT)
         stream.listener.poll_until(lambda: 150 * DT in errors)
         stream.wait_diagnosis('continuing without velocity_meter')

@@ -73,7 +73,7 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
         assert [f.status for f in got] == [f.status for f in expected[:21]]
         assert [f.arrival_ns for f in got] == [f.arrival_ns for f in expected[:21]]
         answer = stream.listener.call(SetBool, 'gnss/outage', SetBool.Request(data=True))
-        assert answer.success and answer.message == 'no fix from now on'
+        assert answer.success and answer.message == 'no fixes from now on'
         stream.send(np.arange(1051, 1201) * DT)
         stream.listener.poll_until(lambda: 23 * SECOND // 2 in fix)
         stream.listener.call(SetBool, 'gnss/outage', SetBool.Request(data=False))

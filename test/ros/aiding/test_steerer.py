@@ -97,8 +97,8 @@ def in_frames(data, *frames):
     (lambda data: in_frames(data, 'odom', 'base_link'), "aided/odometry has the frames 'odom' and "
      "'base_link'; expected 'map' and 'base_link'"),
     (lambda data: in_frames(data, 'map', 'imu'), "the frames 'map' and 'imu'"),
-    (lambda data: moved(data, SECOND), 'has the stamp 2.000000000 s, when the truth is at '
-     '1.000000000 s; expected a solution of this run that is not ahead of the truth'),
+    (lambda data: moved(data, SECOND), 'has the stamp 2.000000000 s, but the truth has only '
+     'reached 1.000000000 s; expected a solution of this run that is not ahead of the truth'),
     (lambda data: data[:4] + struct.pack('<iI', 0, SECOND // 2) + data[12:],
      'aided/odometry jumps back from 0.990000000 s to 0.500000000 s'),
     (lambda data: data[:100], 'nav_msgs/msg/Odometry'),
@@ -153,7 +153,7 @@ def test_two_that_alternate_300_km_apart_do_not_steer(flight):
 
 def test_disengaged_it_flies_straight(flight):
     """The service disengages and engages the autopilot."""
-    assert flight.engage(False).message == 'disengaged: it flies straight'
+    assert flight.engage(False).message == 'disengaged: the vehicle flies straight'
     flight.good(50)
     assert flight.why == 'not engaged' and flight.commands[-1][1] == 0.0
     # The estimate is published nevertheless.
@@ -180,8 +180,8 @@ def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
 @pytest.mark.parametrize('generator, sentence', [
     ({'guidance.latency_s': 5.0}, 'guidance.latency_s is 5 s and the control period 0.01 s, '
      'which leaves the loop a phase margin of -'),
-    ({'guidance.topic': 'nobody/odometry'}, 'no message on nobody/odometry in 5 s; expected a '
-     'solution to steer by (guidance.topic): the vehicle flies straight until one comes')],
+    ({'guidance.topic': 'nobody/odometry'}, 'no message on nobody/odometry in 5 s; expected '
+     'solutions on guidance.topic; the vehicle flies straight until one arrives')],
     ids=('latency', 'nobody'))
 def test_a_loop_that_cannot_be_closed_is_named_once(generator, sentence, ros_domain):
     with Steered(generator) as flight:
@@ -210,7 +210,7 @@ def test_an_autopilot_that_raises_is_named(flight):
     """The vehicle flies straight, and no node ends."""
     flight.generator._steerer.steering.autopilot.command = lambda *_: 1 / 0
     flight.good(20)
-    assert 'the autopilot raises ZeroDivisionError (division by zero) at ' in flight.said
+    assert 'the autopilot raised ZeroDivisionError (division by zero) at ' in flight.said
     assert flight.commands[-1][1] == 0.0
 
 
@@ -258,7 +258,7 @@ def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
         assert steerer._motion.known_ns <= newest_ns + SECOND // 10
     # It waits for the next solution.
     assert steerer._motion.known_ns == newest_ns + SECOND // 10
-    assert flight.why == '' and 'no solution of' not in flight.said
+    assert flight.why == '' and 'no solution for' not in flight.said
 
 
 def test_solutions_that_are_always_late_are_said_once(flight):
@@ -283,8 +283,8 @@ def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
     for patience_s in (5.0, 2.5, 1.25):
         assert not lock.may_send(0.0) and not lock.may_send(0.99 * patience_s)
         assert lock.may_send(0.02 * patience_s)
-    assert 'no solution of 1.000000000 s on aided/odometry in 5 s; expected that' in flight.said
-    assert 'guidance.latency_s must be larger): the last one is used' in flight.said
+    assert 'no solution for 1.000000000 s on aided/odometry in 5 s; expected a' in flight.said
+    assert 'increase guidance.latency_s; the last one is used' in flight.said
     # A pause does not count as waiting.
     assert not lock.may_send(0.0)
     flight.fed.clock.now_s += 100.0

@@ -200,7 +200,7 @@ def test_replay():
     assert made.files == tuple(str(resources.config(name))
                                for name in ('imu_tactical_fog', 'motion_2'))
     for given, says in (({'source': 'ins'}, "source is 'ins'; expected one of imu, truth"),
-                        ({'imu': 'imu_tactical_fog'}, "imu is 'imu_tactical_fog' with source"),
+                        ({'imu': 'imu_tactical_fog'}, "imu is 'imu_tactical_fog', but source"),
                         ({'tf': 'truth'}, "tf is 'truth'; expected one of none, ins")):
         with pytest.raises(ValueError, match=says):
             replay(**given)

@@ -111,8 +111,8 @@ def test_a_filter_that_is_a_node_of_the_test():
 
 
 @pytest.mark.parametrize('arguments, sentence', [
-    ({'topics': ['imu/data']}, "no topic 'imu/data' is handed over; the nearest known one is"),
-    ({'topics': ['gnss/fix']}, 'nothing publishes gnss/fix in this simulation; expected aided'),
+    ({'topics': ['imu/data']}, "unknown topic 'imu/data'; the nearest known one is"),
+    ({'topics': ['gnss/fix']}, 'no node of this simulation publishes gnss/fix; expected aided'),
     ({'values': {'rate': 3.0}}, "unknown parameter 'rate'; the nearest known one is 'rate_hz'"),
 ])
 def test_what_is_wrong_is_one_sentence(arguments, sentence):

@@ -114,8 +114,8 @@ def test_somebody_who_knows_the_standard(executable, chain, tmp_path):
     found = json.loads(chain.text(client).partition('FOUND ')[2])
     assert found['features'] == [20, 21, 22, 24, 25, 26, 31, 32]
     assert found['playing'] == 1
-    assert found['not paused'] == [4, 'it is running; expected paused']
-    assert found['pause'] == [[1, ''], [101, 'it is in that state already'], 2]
+    assert found['not paused'] == [4, 'the simulation is running; expected paused']
+    assert found['pause'] == [[1, ''], [101, 'the simulation is already in that state'], 2]
     assert found['steps'][:2] == [[1, '', 1], [1, '', 25]]
     assert found['steps'][2][0] == 4 and 'steps is 0; expected 1 to' in found['steps'][2][1]
     assert found['reset'][0] == [1, ''] and found['reset'][1][0] == 0

@@ -81,8 +81,8 @@ def test_a_factor_of_zero_needs_lock_step(ros_domain):
     with Generator() as generator:
         generator.sent(10)
         assert generator.set(0.0) == (
-            f'{FACTOR} is 0 without pacing.lock_step; expected more than 0: lock-step begins with '
-            'the run or not at all')
+            f'{FACTOR} is 0 without pacing.lock_step; expected more than 0, because lock-step '
+            'cannot be switched on during a run')
         assert value_of(generator.node, FACTOR) == 1.0
     with Generator(**{'pacing.lock_step': True, 'pacing.window': 20}) as generator:
         generator.node._lock._acked['strapdown'] = 0

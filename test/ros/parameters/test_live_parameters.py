@@ -84,7 +84,7 @@ def test_a_fault_is_injected_changed_and_taken_away(ros_domain):
         force = service_of(node, 'fault')
         answer = force(SimpleNamespace(data=True), SimpleNamespace(success=False))
         assert not answer.success and answer.message == (
-            'gyro.dtg.fault.channel is none; expected the channel that is to have the fault')
+            'gyro.dtg.fault.channel is none; expected the name of the channel to be disturbed')
         pair = node.stage.pair.pair
         flown.fly(100)
         assert ask_at_once(node, {FAULT + 'channel': 'gyro_2_z', FAULT + 'bias_deg_h': 3600.0,

@@ -28,11 +28,11 @@ NONSENSE = [
      'as many'),
     ('gnss', 'outages.start_s', [-1.0], ' is -1 s; expected 0 to 1e+07 s'),
     ('gnss', 'outages.start_s', 5.0, ' is 5.0; expected a list'),
-    ('gnss', 'seed', 3, 'seed is read-only: it is taken at the start; settable while it runs: one '
-     'of outages.start_s, outages.end_s, jump.start_s, jump.end_s, jump.offset_m'),
+    ('gnss', 'seed', 3, 'seed is read-only, because it is read at the start; can be set while the '
+     'node runs: one of outages.start_s, outages.end_s, jump.start_s, jump.end_s, jump.offset_m'),
     ('strapdown', 'seed', 1, "unknown parameter 'seed'; the nearest known one is 'use_sim_time'"),
-    ('strapdown', 'rate_hz', 1.0, 'rate_hz is read-only: it is taken at the start; settable while '
-     'it runs: none of this node'),
+    ('strapdown', 'rate_hz', 1.0, 'rate_hz is read-only, because it is read at the start; can be '
+     'set while the node runs: no parameter of this node'),
     ('velocity_meter', 'drop_outs.start', [1.0], "unknown parameter 'drop_outs.start'; the "
      "nearest known one is 'drop_outs.start_s'"),
 ]

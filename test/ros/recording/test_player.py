@@ -236,7 +236,7 @@ def test_a_long_silence_is_said_with_the_way_out(chain, tmp_path):
             log_ns = (k >= 5) * 1_700_000_000 * SECOND + k * 10**7
             bag.write('imu', log_ns, pack(log_ns, (0.0,) * 3, (0.0, 0.0, 9.8)))
     player = chain.start_verb('play', path, '--wait', '0')
-    chain.wait_text(player, 'nothing was logged for 1700000000.010 s from 0.040 s on: waiting '
+    chain.wait_text(player, 'the bag has no message for 1700000000.010 s from 0.040 s on: waiting '
                             '1700000000 s (--start 1700000000.050 begins after the gap')
     end(chain, player)
     player = chain.start_verb('play', path, '--wait', '0', '--start', '1700000000.050')

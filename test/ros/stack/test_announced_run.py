@@ -74,7 +74,7 @@ def test_what_comes_before_the_announcement_waits(flight):
     assert flight.fed.bus.sent[topics.IMU_RAW.name] == 21
     assert flight.newest(topics.INS_ODOMETRY) == 20 * SECOND // 100
     assert flight.newest(topics.ACK) == 20 * SECOND // 100
-    assert 'nobody announces' not in flight.said('strapdown')
+    assert 'no node announces' not in flight.said('strapdown')
 
 
 def test_motion_time_is_that_of_the_epoch(ros_domain):
@@ -99,8 +99,8 @@ def test_where_nobody_announces_motion_time_is_the_stamp(flight):
     flight.good(30)
     assert flight.newest(topics.INS_ODOMETRY) == 29 * SECOND // 100
     for node in ('imu_sensor', 'strapdown', 'gnss', 'velocity_meter', 'aided_navigator'):
-        assert flight.said(node).count('nobody announces a run on sim/run: motion time is the '
-                                       'stamp itself') == 1
+        assert flight.said(node).count('no node announces a run on sim/run: motion time is the '
+                                       'stamp of the messages') == 1
 
 
 def test_readings_may_come_before_the_generator_is_found(flight):
@@ -157,7 +157,7 @@ def test_another_generator_starts_all_anew(flight):
     assert flight.newest(topics.INS_ODOMETRY) == 50 * SECOND // 100
     flight.announce(RUN, 'imu_sensor')
     assert 'sim/run announces a run with the epoch 1735689600.000000000 s after 0.000000000 s; ' \
-        'expected one generator: starting anew with it' in flight.said('imu_sensor')
+        'expected one generator: restarting with the new epoch' in flight.said('imu_sensor')
     assert flight.fed.nodes['imu_sensor'].epoch_ns == EPOCH_NS
 
 

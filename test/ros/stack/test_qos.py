@@ -168,7 +168,7 @@ def test_overrides_of_other_nodes_are_told_once(make_node):
     node.monitor._publisher = type('Publisher', (), {'publish': staticmethod(sent.append)})
     node.monitor.publish()
     node.monitor.publish()
-    assert sum('1 qos_overrides are of no publisher and no subscription of this node '
+    assert sum('1 qos_overrides belong to no publisher or subscription of this node '
                'and have no effect here; the first is qos_overrides./no/topic.publisher.depth'
                in text for text in said) == 1
     assert {array.status[0].hardware_id for array in sent} == {'/strapdown'}

@@ -156,7 +156,7 @@ def test_services_answer_in_a_sentence():
         assert graph.node.stage.begun == 2
         assert 'the alignment requested by ~/align was cancelled' in graph.said
         assert graph.call('reset') == (
-            True, 'started anew from initial.source alignment: expected a vehicle at rest')
+            True, 'started anew from initial.source alignment; expected a vehicle at rest')
         assert graph.node.stage.run is None
     with RealImuGraph(**{'initial.source': 'truth', 'input': 'rotation_vector'}) as graph:
         assert not graph.call('align')[0] and 'initial.source is truth' in graph.call('align')[1]

@@ -38,7 +38,7 @@ def test_noise_is_that_of_the_recorded_run(chain, ros_domain, tmp_path):
         heard = listener.heard[topics.IMU_RAW.name]
     finally:
         listener.close()
-    assert all('nobody announces' not in chain.text(node) for node in nodes)
+    assert all('no node announces' not in chain.text(node) for node in nodes)
     with open_bag(bag) as opened:
         table = opened.arrays(topics.IMU_RAW.name)
     assert table['stamp_ns'][0] == 1735689600 * 10**9

@@ -84,10 +84,11 @@ def test_a_listener_of_tf_hears_us(chain, tmp_path):
     fixed = {tuple(one[:2]): one[3:] for one in heard['/tf_static']}
     assert fixed == dict.fromkeys([('uav1/map', 'uav1/odom'), ('uav1/base_link', 'uav1/imu_link')],
                                   [[0.0] * 3, [0.0, 0.0, 0.0, 1.0]])
-    chain.wait_text(nodes['strapdown'], "/tf places 'uav1/base_link' in 'uav1/map', and this node "
-                    "places it in 'uav1/odom'; expected one source of a frame", GUARD_S)
+    chain.wait_text(nodes['strapdown'], "/tf: another node publishes 'uav1/base_link' in "
+                    "'uav1/map', and this node publishes it in 'uav1/odom'; expected one source "
+                    'for each frame', GUARD_S)
     said = chain.text(nodes['strapdown'])
-    assert said.count('/tf places') == 1 and 'tf2_msgs' not in said
+    assert said.count('another node publishes') == 1 and 'tf2_msgs' not in said
     listener.kill()
     listener.wait()
     assert all(process.poll() is None for process in nodes.values())

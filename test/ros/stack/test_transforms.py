@@ -118,8 +118,8 @@ def test_without_a_strapdown_the_aided_navigator_goes_on(ros_domain):
             name, data)
         flight.good(700)
         said = flight.said('aided_navigator')
-        assert 'no message on ins/odometry in 5 s; expected the odom of every solution ' \
-            '(tf.source aided): no map -> odom without it' in said
+        assert 'no message on ins/odometry in 5 s; expected a free INS solution for every aided ' \
+            'one, because tf.source is aided; map -> odom is not published without it' in said
         assert flight.fed.bus.newest_ns['aided/odometry'] == 709 * SECOND // 100
         flight.fed.bus.put = publish
         before = len(flight.moving('map', 'odom'))
@@ -139,10 +139,11 @@ def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domai
         flight.fed.bus.put('/tf', TransformWriter(('uav2/map', 'uav2/base_link')).pack(0, POSE))
         flight.look()
         mine = 'map' if child.endswith('odom') else 'odom'
-        assert f"/tf places '{child}' in '{parent}', and this node places it in 'uav1/{mine}'; " \
-            'expected one source of a frame: one tf.source in all nodes' in flight.said(node)
+        assert f"/tf: another node publishes '{child}' in '{parent}', and this node publishes " \
+            f"it in 'uav1/{mine}'; expected one source for each frame: the same tf.source in " \
+            'all nodes' in flight.said(node)
         others = [name for name in flight.fed.nodes if name != node]
-        assert 'places' not in ''.join(map(flight.said, others))
+        assert 'another node' not in ''.join(map(flight.said, others))
 
 
 def test_bytes_that_are_no_transform_are_named(ros_domain):

@@ -71,7 +71,7 @@ def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
         text = chain.text(started[name, 'strapdown'])
         missing = 'tf.source is ins, but tf2_msgs cannot be imported; expected that ROS package'
         assert text.count(missing) == (importlib.util.find_spec('tf2_msgs') is None)
-        assert 'nobody announces' not in text and 'Traceback' not in text
+        assert 'no node announces' not in text and 'Traceback' not in text
     left, right = ([*heard[name]['ins/odometry']] for name in EPOCHS)
     assert left[0] == 1735689600 * SECOND and left[-1] == left[0] + 4 * SECOND
     run, = runs['right']

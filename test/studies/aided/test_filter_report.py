@@ -91,5 +91,5 @@ def test_cases():
         FilterCase('free', 100), FilterCase('eskf', 100), FilterCase('eskf', 10))
     with pytest.raises(ValueError, match="filter is 'ukf'; expected one of free, conventional"):
         cases_of(['ukf'])
-    with pytest.raises(ValueError, match='there is no filter; expected one or more'):
+    with pytest.raises(ValueError, match='filters is empty; expected one or more'):
         cases_of([])

@@ -100,11 +100,11 @@ def test_a_misspelt_requirement_gets_the_grammar(text, tmp_path, capsys):
 def test_what_cannot_be_answered_is_refused(study, tmp_path, capsys):
     """A late requirement, one run, other settings, no study, and tuned gyros are refused."""
     out = ['-o', str(tmp_path / 'b')]
-    assert 'which ends after 60 s' in refused(
+    assert 'at most 60 s' in refused(
         capsys, *FILES, '--require', 'horizontal rms 1 m at 61 s', *out)
     assert 'expected at least 2' in refused(capsys, *FILES, '--runs', '1', *out)
     assert 'expected at least 2' in refused(capsys, *FILES, '--runs', '-3', *out)
-    assert 'other settings of imu_sensor' in refused(
+    assert 'the settings of imu_sensor' in refused(
         capsys, *FILES, '-p', 'gyro.errors.bias_deg_h:=[1.0, 0.0, 0.0]', '--beside', str(study),
         *out)
     assert 'holds no ensemble.npz' in refused(capsys, *FILES, '--beside', str(tmp_path), *out)
@@ -202,7 +202,7 @@ def test_instants_that_are_not_compared_are_counted(tmp_path, capsys):
     assert 'instants of the ensemble are left out' not in said[0]
     assert '6 of the 8 instants of the ensemble are left out' in said[1]
     capsys.readouterr()
-    assert 'has 1 run that counts; expected at least 2' in refused(
+    assert 'has 1 run that has not diverged; expected at least 2' in refused(
         capsys, *FILES, '--beside', str(study), '-o', str(tmp_path / 'b'))
 
 
@@ -211,7 +211,7 @@ def test_ideal_instruments_are_not_said_to_agree(capsys, tmp_path):
     assert main(['budget', '--params-file', 'racetrack', '-p', 'duration_s:=10.0', '--runs', '2',
                  '-o', str(tmp_path / 'b')]) == 0
     said = ' '.join(capsys.readouterr().out.split())
-    assert 'is not compared: no random error' in said and 'inside its' not in said
+    assert 'is not compared, because no quantity' in said and 'inside its' not in said
 
 
 def test_an_empty_name_of_a_study_is_refused(capsys, tmp_path):

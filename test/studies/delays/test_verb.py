@@ -182,7 +182,7 @@ def test_from_python(tmp_path):
     ('figure_1', {'detunings_rad_s': []}, 'detunings_rad_s is empty; expected at least one'),
     ('figure_1', {'detunings_rad_s': [0.1, 0.1]}, 'detunings_rad_s has a value twice'),
     ('rates', {'motion.two_axis.psi_rate_rad_s': 0.0, 'motion.two_axis.gamma_rate_rad_s': 0.0,
-               'duration_s': 2.0}, 'are 0 with figure rates; expected a motion that turns'),
+               'duration_s': 2.0}, 'are 0 with figure rates; expected at least one'),
     ('figure_3', {'accelerometer.delay_us.x': 1.0}, 'accelerometer.delay_us is not the default'),
     ('figure_3', {'gyro.errors.bias_deg_h': [1.0, 0.0, 0.0]}, 'gyro.errors is not the default; '
      'the study of delays expects instruments and a start without other errors'),

@@ -88,7 +88,7 @@ def test_from_python(made):
     assert found.delays - found.lags == pytest.approx([2e-6, 1e-6, 3e-6],
                                                       abs=4.0 * found.delay_sigmas.max())
     assert (again.delay_sigmas < found.delay_sigmas).all()
-    assert any('cannot be told apart' in note for note in found.notes)
+    assert any('cannot be distinguished' in note for note in found.notes)
     pytest.importorskip('pandas', reason='pandas is not installed')
     table = found.to_dataframe()
     assert list(table.columns) == ['axis', 'name', 'unit', 'value', 'sigma', 'told']
@@ -185,7 +185,7 @@ def test_without_a_source_motions_are_compared(tmp_path, capsys):
     # Twice the frequency, four times the angular acceleration.
     assert np.array(own['sigma_us']) == pytest.approx(np.array(base['sigma_us']) / 4.0, rel=0.01)
     said = capsys.readouterr().out
-    assert 'Of the motions compared rocking of the parameters shows delays best' in said
+    assert 'Of the motions compared, rocking of the parameters determines delays best' in said
     assert 'as fast as the bench allows' in said
 
 
