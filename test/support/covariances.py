@@ -19,19 +19,14 @@ SIGMAS = {'initial.position_sigma_m': 1.0, 'initial.velocity_sigma_m_s': 0.05,
 
 
 def settings_of(motion, instrument, seconds, **values):
-    """
-    Return SimulationSettings from the name of a motion in FILES, an instrument file and a
-    duration.
-    """
+    """Return SimulationSettings of a motion (key of FILES), an instrument file and a duration."""
     files = [resources.parameter_file(name) for name in (*FILES[motion], instrument)]
     return parameter_files.read(files, {
         'duration_s': seconds, **(REST if motion == 'rest' else {}), **values})
 
 
 def without_errors(settings):
-    """
-    Return the settings with a perfect sensor; the error model of the strapdown stays as it is.
-    """
+    """Return the settings with a perfect sensor; the error model of the strapdown is kept."""
     sensor = settings.imu_sensor
     perfect = {name: replace(getattr(sensor, name), errors=type(getattr(sensor, name).errors)())
                for name in ('gyro', 'accelerometer')}

@@ -211,8 +211,7 @@ class FedNodes:
         def patch(owner, name, value):
             stack.enter_context(mock.patch.object(owner, name, value))
 
-        # Node processes use compiled functions only where plain Python would be too slow; so does
-        # this.
+        # As in node processes: plain Python, because a live node must not stop to compile.
         stack.enter_context(plain_only())
         self._context = rclpy.Context()
         self._context.init()

@@ -19,7 +19,7 @@ from ins_sim.settings.catalogue import build
 from ins_sim.settings.strapdown import StrapdownSettings
 
 LIVE = {'initial.source': 'alignment', 'input': 'instant', 'vertical.channel': 'free'}
-# Settings of navigate that have another name than in LIVE, or no counterpart.
+# The same for navigate, whose settings have other names or no counterpart.
 OFFLINE = {'reference.odometry': 'none', 'reference.velocity': 'none'}
 FIELDS = ('lat', 'lon', 'height', 'v_n', 'q_nb')
 
