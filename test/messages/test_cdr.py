@@ -1,4 +1,4 @@
-"""Messages as bytes equal those of ROS, and those of ROS are read back."""
+"""Packed messages equal those of ROS to the byte, and those of ROS are read back."""
 
 import math
 
@@ -142,7 +142,7 @@ def test_the_wrong_number_of_strings_is_refused():
 
 @pytest.mark.parametrize('wrong', [math.nan, math.inf, -math.inf])
 def test_what_is_no_number_is_not_packed(wrong):
-    """Values that are not finite are not packed; a huge sum of finite numbers is."""
+    """Values that are not finite are not packed; finite numbers with a huge sum are."""
     writer = Writer('geometry_msgs/msg/Vector3Stamped', 'enu')
     for values in ((wrong, 0.0, 0.0), (0.0, wrong, -wrong)):
         with pytest.raises(ValueError, match='would hold .* expected finite numbers'):
@@ -151,7 +151,7 @@ def test_what_is_no_number_is_not_packed(wrong):
 
 
 def test_nanoseconds_are_less_than_a_second():
-    """A sender of more has a broken clock; our messages never have more."""
+    """Stamps with 1e9 nanoseconds or more are refused; ours never have as many."""
     data = bytearray(Writer('std_msgs/msg/Header', 'map').pack(1))
     data[8:12] = (1_000_000_000).to_bytes(4, 'little')
     with pytest.raises(ValueError, match='1000000000 nanoseconds in its stamp; expected less'):

@@ -1,4 +1,4 @@
-"""Recorded flights in detail: wraps, smoothing, epochs, rounding of the file."""
+"""Recorded flights in detail: wrapped angles, smoothing, epochs, rounding of the file."""
 
 import gzip
 import math
@@ -44,7 +44,7 @@ def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
 
 
 def test_wraps_of_heading_roll_and_longitude_change_nothing(tmp_path):
-    """A turn through north, a roll through 180 deg and a flight over the date line are smooth."""
+    """Through north, a roll of 180 deg and the date line the flight is smooth."""
     t = np.arange(201) * 0.1
     heading, roll, lon = 350.0 + 2.0 * t, 170.0 + t, 179.99 + 0.002 * t
     plain = load(write(tmp_path / 'plain.csv', t, lon=lon, roll=0.0, heading=heading % 360.0))
@@ -88,7 +88,7 @@ def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
 
 @pytest.mark.parametrize('largest', (1e-3, 0.1, 1.0, 3.0, 6.0))
 def test_exponential_series_is_the_rotation_and_its_rate(largest):
-    """The rotation agrees with SciPy to rounding, the rate with q' = q (0, omega) / 2."""
+    """The exponential series agrees with SciPy's rotation and the rate with q' = q (0, w) / 2."""
     rng = np.random.default_rng(2)
     r = rng.standard_normal((3, 500))
     r *= largest * rng.random(500) / np.sqrt((r * r).sum(0))
@@ -116,7 +116,7 @@ def test_gzip_is_the_plain_file(tmp_path, flown):
 
 
 def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
-    """Stamps are parsed as decimals: a float of 1.7e9 s would resolve only 0.24 us."""
+    """Stamps are parsed as decimals: as a float 1.7e9 s would resolve only 0.24 us."""
     stamps = [f'17000000{k // 10:02d}.{k % 10}00000001' for k in range(101)]
     lines = [','.join(COLUMNS)] + [f'{s},55,37,100,0,0,0,,,' for s in stamps]
     path = tmp_path / 'r.csv'
@@ -139,7 +139,7 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
     """The predicted force noise of rounded heights in level flight is right to 5 % (n = 4000)."""
     rng = np.random.default_rng(1)
     t = np.arange(4000) * 0.1
-    # A slow random wander decorrelates the rounding; its own acceleration is 1e-4 m/s^2.
+    # A slow random walk decorrelates the rounding; its own acceleration is 1e-4 m/s^2.
     height = np.round(100.0 + 3.0 * np.sin(0.005 * t) + 2.0 * np.sin(0.0037 * t + 1.0)
                       + 0.3 * rng.standard_normal(4000), 1)
     motion = load(write(tmp_path / 'r.csv', t, height=height, digits='.15g'))
@@ -153,7 +153,7 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
 
 
 def test_unrounded_flight_draws_no_warning(flown, tmp_path):
-    """No warning either for few decimals that are exact: 10 m/s written to 0.1 m at 100 Hz."""
+    """No warning without rounding, nor for few exact decimals: 10 m/s to 0.1 m at 100 Hz."""
     assert flown[0].warnings == []
     t = np.arange(1001) * 0.01
     assert load(write(tmp_path / 'r.csv', t, height=10.0 * t, digits='.12g')).warnings == []
@@ -169,7 +169,7 @@ def test_single_precision_is_seen_through_its_decimals(tmp_path):
 
 
 def test_spline_gain_is_the_gain_of_the_spline():
-    """The gain is the root of the sum of squares of the spline's response to an impulse."""
+    """The noise gain of the spline is the root of the sum of squares of its impulse response."""
     from scipy.interpolate import make_interp_spline
     t = np.arange(201.0)
     impulse = make_interp_spline(t, (t == 100.0).astype(float), k=5)

@@ -1,4 +1,4 @@
-"""Bad recordings: each is refused in one sentence that says where, what, and what was expected."""
+"""Invalid recordings are refused with one message: where, what is wrong, what is expected."""
 
 import gzip
 import math
@@ -22,7 +22,7 @@ def test_the_flight_all_others_are_made_of_is_accepted(folder):
     assert motion.end_s == pytest.approx(4.0) and motion.warnings == []
 
 
-# The file.
+# Tests of the file.
 
 def test_no_path_no_file_no_permission(folder):
     assert "motion.recording.path is ''" in refusal('')
@@ -82,7 +82,7 @@ def test_any_bytes_end_in_a_sentence(folder, data):
     assert str(path) in refusal(path) or 'start_s' in refusal(path)
 
 
-# The columns.
+# Tests of the columns.
 
 def test_columns(folder):
     path = folder / 'columns.csv'
@@ -92,7 +92,7 @@ def test_columns(folder):
     assert 'it has no column lat_deg; expected' in sentence
     spare = accepted(save(path, [r + ['1'] for r in table], HEADER + ',wind'))
     assert '1 columns are not used: wind' in spare.warnings[0]
-    # velocities are not used, and need not be there
+    # Velocities are not used and may be absent.
     assert not accepted(save(path, [r[:-1] for r in table], HEADER[:-7])).warnings
     assert not accepted(save(path, [r[:-3] for r in table], HEADER[:-21])).warnings
     assert 'column t_s stands 2 times' in refusal(save(path, [r + ['1'] for r in table],
@@ -114,7 +114,7 @@ def test_number_of_fields(folder, fields):
         save(folder / 'fields.csv', table))
 
 
-# The values.
+# Tests of the values.
 
 @profile(max_examples=60, deadline=None)
 @given(row=st.integers(0, 100), name=st.sampled_from(COLUMNS),
@@ -143,7 +143,7 @@ def test_angles_and_heights_out_of_range_are_refused(folder, row, name, above, b
     assert f'expected a number {low:g}..{high:g}' in sentence
 
 
-# The stamps.
+# Tests of the stamps.
 
 @profile(max_examples=40, deadline=None)
 @given(row=st.integers(1, 100), back=st.integers(0, 50))
@@ -185,13 +185,17 @@ def test_missing_row_is_no_gap(folder):
     assert '1 gaps' in refusal(save(folder / 'two.csv', table))
 
 
-# Jumps.
+# Tests of jumps.
 
 @profile(max_examples=40, deadline=None)
 @given(row=st.integers(1, 100), metres=st.floats(21.0, 1e5), name=st.sampled_from(
     ('lat_deg', 'lon_deg', 'height_m')))
 def test_position_jumps_are_refused_with_their_time(folder, row, metres, name):
-    """At 10 Hz the limit is the larger of 20 m and 500 m/s^2 (0.1 s)^2 = 5 m."""
+    """
+    A position jump is refused with its time; the limit at 10 Hz is 20 m.
+
+    It is the larger of 20 m and 500 m/s^2 (0.1 s)^2 = 5 m.
+    """
     scale = {'lat_deg': 111e3, 'lon_deg': 111e3 * math.cos(math.radians(55.0)), 'height_m': 1.0}
     k = COLUMNS.index(name)
     table = rows()
@@ -227,7 +231,11 @@ def test_correction_steps_are_reported_not_refused(folder):
 
 @pytest.mark.parametrize('fault', ('gap', 'jump', 'back'))
 def test_cut_keeps_the_part_that_holds_start(folder, fault):
-    """100 s at 10 Hz with a fault at 60 s: 3 s at both ends of either part are kept as pads."""
+    """
+    on_gap cut keeps the part of 100 s that contains start_s, less 3 s of padding at both ends.
+
+    The recording has 10 Hz and a fault at 60 s.
+    """
     table = rows(1001)
     for k, row in enumerate(table[600:], 600):
         if fault == 'jump':
@@ -243,7 +251,7 @@ def test_cut_keeps_the_part_that_holds_start(folder, fault):
         {'gap': 105.0, 'jump': 100.0, 'back': 95.0}[fault] - 83.0, abs=1e-6)
 
 
-# The extent.
+# Tests of the extent.
 
 def test_too_short(folder):
     path = folder / 'short.csv'

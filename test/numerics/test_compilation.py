@@ -1,4 +1,4 @@
-"""Compiled copies of plain functions, and the messages if they are not available."""
+"""Compiled copies of plain functions, and the messages if they cannot be made."""
 
 import logging
 import os
@@ -23,7 +23,7 @@ def numba():
 
 
 def python(script, **environment):
-    """Return standard error and output of a new process."""
+    """Return the standard error and output of a new Python process."""
     done = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True,
                           env={**os.environ, **environment}, check=False)
     assert done.returncode == 0, done.stderr

@@ -16,7 +16,7 @@ def both(low, high):
     return RNG.uniform(low, high, COUNT)
 
 
-# Function, range of arguments, largest error in units in the last place.
+# Function, range of arguments, greatest error in units in the last place.
 CASES = {
     'sin': ('sin', both(-10.0, 10.0), 1.5),
     'cos': ('cos', both(-10.0, 10.0), 1.5),
@@ -82,7 +82,7 @@ def test_an_array_of_points_has_the_bits_of_floats():
 
 @pytest.mark.parametrize('x', [0.0, -0.0, 0.3, -0.784999, 0.785, 0.7853981633974483, 1e-300])
 def test_the_short_way_has_the_bits_of_the_long_one(x):
-    """The shortcut for small angles has the bits of the general function, signs of zero too."""
+    """The shortcut for small angles has the bits of the general function and its signs of zero."""
     assert repr(elementary.sincos(x)) == repr(elementary.general_sincos(x))
     for y in (0.0, 0.1, 0.66 * x, 2.0 * x, -x):
         for point in ((y, x), (x, y)):
