@@ -1,4 +1,4 @@
-"""Faulty streams: a node reports the fault on log and /diagnostics, and starts anew."""
+"""Faulty streams: a node reports the fault in its log and /diagnostics, and starts anew."""
 
 import time
 
@@ -19,7 +19,7 @@ DT = 10_000_000
 
 
 class Source:
-    """A node chain without generator, and truth at any stamps."""
+    """The nodes of a chain without generator, and truth at any stamps."""
 
     def __init__(self, domain, folder, parameters=None):
         self.chain = Chain(domain, folder)
@@ -64,7 +64,7 @@ class Source:
         self.listener.poll_until(lambda: t_ns in self.listener.heard['ins/odometry'], 30.0)
 
     def wait_diagnosis(self, node, part):
-        """Wait until /diagnostics contains this about a node."""
+        """Wait until /diagnostics contains this text about a node."""
         try:
             self.listener.spin_until(lambda: any(
                 node in name and part in message for name, _, message in self.diagnostics))
@@ -72,7 +72,7 @@ class Source:
             raise AssertionError(f'{node}: {part!r} not in {self.diagnostics}') from None
 
     def close(self):
-        """End everything."""
+        """End all processes."""
         self.chain.end()
         self.listener.close()
 

@@ -18,7 +18,7 @@ def chain(ros_domain, tmp_path):
 
 
 def fails(chain, node, parameters, code, arguments=()):
-    """Start a node, expect an exit code, and return its one message."""
+    """Start a node that must end with an exit code; return its one message."""
     process = chain.start(node, parameters, arguments)
     assert process.wait(60.0) == code, chain.text(process)
     text = chain.text(process)
@@ -142,9 +142,7 @@ def test_clock_and_use_sim_time(chain, ros_domain):
 
 
 def test_an_injected_fault_is_seen(chain, ros_domain):
-    """
-    The service ~/fault makes a channel fail; imu/parity and /diagnostics show it, and then stop.
-    """
+    """A fault injected by ~/fault appears in imu/parity and /diagnostics, and then ends."""
     from std_srvs.srv import SetBool
     dtg = {'gyro.model': 'dtg', 'output': 'integrated', 'gyro.dtg.fault.channel': 'gyro_2_z',
            'gyro.dtg.fault.bias_deg_h': 500.0, 'gyro.dtg.fault.start_s': -1.0,
