@@ -24,7 +24,7 @@ def told(*texts, names=(), aided=False, own_motion=False):
 
 
 def test_a_written_run_has_it(tmp_path):
-    """The manifest names the noise generator with its version, and that all machines agree."""
+    """The manifest names the noise generator with its version, and every x86-64 machine."""
     out = tmp_path / 'run'
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(out)]) == 0
     text = (out / 'manifest.yaml').read_text(encoding='utf-8')
@@ -34,7 +34,7 @@ def test_a_written_run_has_it(tmp_path):
 
 
 def test_what_is_the_same_on_one_machine_only(tmp_path, monkeypatch):
-    """Recorded motions, meter signals, user's motions and other processors limit the guarantee."""
+    """Recorded motions, meter signals, a user's motion, other processors limit the promise."""
     recording = ('motion.kind:=recording', 'motion.recording.path:=somewhere.csv')
     flight = {'names': ['gnss_outage_flight', 'grade_mid'], 'aided': True}
     assert told(**flight) == {'noise': NOISE, 'bits': 'every x86-64 machine'}

@@ -1,4 +1,4 @@
-"""Epoch and frames: what the settings mean, and what they refuse."""
+"""Epoch and frames: what the settings mean and what they refuse."""
 
 import time
 
@@ -46,7 +46,7 @@ def test_names_of_frames():
     assert names['map'] == 'uav1/map' and names['base_link'] == 'uav1/body'
     assert names['enu'] == 'uav1/enu' and names['leg'] == 'uav1/leg'
     assert set(map(str, Frames().names().values())) == {*ROLES, 'enu', 'leg'}
-    # names may have parts of their own
+    # Names may have several parts.
     assert build(Frames, {'imu_link': 'nose/imu'}).names()['imu_link'] == 'nose/imu'
 
 

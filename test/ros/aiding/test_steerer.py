@@ -108,11 +108,7 @@ def in_frames(data, *frames):
     ids=('silence', 'nan', 'speed', 'frame', 'child frame', 'ahead', 'back', 'short', 'jump',
          'quaternion'))
 def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
-    """
-    A bad solution gives one message; the last one is held for 1 s, then the flight is straight.
-
-    When the input is good again the autopilot steers again.
-    """
+    """A bad solution gives one message, is held for 1 s, and a good one steers again."""
     before = len(flight.commands)
     flight.change = change
     flight.good(250)
@@ -140,11 +136,7 @@ def test_two_publishers_are_named(flight):
 
 
 def test_two_that_alternate_300_km_apart_do_not_steer(flight):
-    """
-    If two publishers 300 km apart alternate, every second solution is a jump: no steering.
-
-    Of two messages with one stamp the first counts.
-    """
+    """If two publishers 300 km apart alternate, every second solution is a jump: no steering."""
     turn = [0]
 
     def alternate(data):
@@ -172,11 +164,7 @@ def test_disengaged_it_flies_straight(flight):
 
 
 def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
-    """
-    Engaged in a turn the autopilot waits for the end of the turn, and logs it.
-
-    The turn is flown as on a route.
-    """
+    """Engaged in a turn the autopilot starts at the end of the turn, and logs this."""
     route = {'motion.route.points.latitude_deg': [55.0, 55.5, 55.6],
              'motion.route.points.longitude_deg': [37.0, 37.3, 38.2]}
     with Steered({**route, 'start_s': 285.0, 'guidance.engage_after_s': 1e6}) as flight:

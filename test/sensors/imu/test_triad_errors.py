@@ -1,4 +1,4 @@
-"""Each instrument error alone has the effect of its equation; without errors the input is kept."""
+"""Each sensor error alone has the effect of its equation; without errors the input is kept."""
 
 from dataclasses import replace
 import math
@@ -93,7 +93,7 @@ def test_terms_without_memory(errors, expected):
 
 
 def test_temperature():
-    """Bias and scale factor follow constant, ramp and sinusoid of the temperature."""
+    """The bias and scale factor follow a constant, ramp and sinusoid of the temperature."""
     cls = GyroErrors(temperature_bias_deg_h_c=three(0.5), temperature_scale_ppm_c=three(4.0))
     errors = errors_of(cls, temperature=WARM)
     for t in (0.0, 100.0, 5000.0):
