@@ -102,7 +102,7 @@ def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):
     At the smallest value, K = 0.172, both roots have equal moduli.
     """
     gains = np.linspace(0.001, 1.2, 100000)
-    # The larger root of the quadratic, for all gains at once.
+    # The larger root of the quadratic, for all gains.
     a, b = 1.0 - gains, np.emath.sqrt((1.0 - gains) ** 2 - 4.0 * gains)
     largest = np.maximum(np.abs(a + b), np.abs(a - b)) / 2.0
     best = gains[largest.argmin()]

@@ -142,7 +142,7 @@ NAN = math.nan
     (GNSS, replace(GNSS_FIX, velocity_sigma=(1.0, NAN, 1.0)), 'expected positive ones'),
 ])
 def test_what_can_be_no_fix_is_refused_in_one_sentence(source, fix, sentence):
-    """An impossible fix is dropped with one sentence; the navigator continues as if without it."""
+    """An impossible fix is dropped with one message; the solution is as if it had not come."""
     nav, without = navigator(), navigator()
     with pytest.raises(StreamFault) as refusal:
         nav.take(source, fix)

@@ -117,7 +117,7 @@ def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path
 
 
 def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
-    """Samples that one topic lacks are left out; 0.6 s without any end the motion (on_gap cut)."""
+    """Samples that one topic lacks are left out; a lack of 0.6 s is a gap (on_gap cut)."""
     def lose(window):
         window[topics.TRUTH_FIX] = [np.delete(x, slice(900, 960), axis=0)
                                     for x in window[topics.TRUTH_FIX]]

@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 
 
 def flown(path, latitude, longitude, *names):
-    """Write a bag with 20 s of racetrack from a position; names: topics, or none for all."""
+    """Write a bag with 20 s of racetrack from a position; names: topics, by default all."""
     words = [f'datum.latitude_deg:={latitude}', f'datum.longitude_deg:={longitude}',
              'motion.kind:=racetrack', 'duration_s:=20.0', 'rate_hz:=20.0']
     given = [word for a in words for word in ('-p', a)]

@@ -228,7 +228,7 @@ def moving(seconds_each, rate_hz=50.0, seed=3):
 
 
 def test_the_standstill_is_found_where_it_is():
-    """The first standstill that is long enough is found, not longer than asked, without motion"""
+    """The first standstill that is long enough is found, and no more of it than is needed."""
     imu = moving([3.0, 4.0, 20.0, 5.0, 40.0])
     limits = AlignmentSettings()
     still = standstill.find_standstill(imu, limits)

@@ -1,9 +1,9 @@
 """
 The tables of the filter study: rms errors of several flights, and consistency of the filters.
 
-The published tables are of twelve flights, which take half an hour and are simulated by ``make
-figures``. Four flights show whether a filter still works; their bounds are wider by the larger
-scatter of four.
+The published tables are of twelve flights, which take half an hour and are simulated by
+``make figures``. Four flights show whether a filter still works; their bounds are wider by the
+larger scatter of four.
 """
 
 from functools import partial

@@ -84,7 +84,7 @@ def test_no_errors_give_the_input_itself(cls, temperature):
      lambda u, f: u + 3.0 * DEG_H * (f / STANDARD_GRAVITY) ** 2),
     (gyro(saturation_deg_s=20.0), lambda u, f: max(-20.0 * DEG, min(20.0 * DEG, u)))])
 def test_terms_without_memory(errors, expected):
-    """Each term without memory changes the input as its equation says, within 8 ulp."""
+    """Each term without memory changes the input by its equation, within 8 ulp."""
     for index, sign in ((0, 1.0), (1, -1.0)):
         got = errors.step(index, tuple(sign * u for u in U), F, 0.0)
         for value, u, f in zip(got, U, F):
