@@ -98,7 +98,7 @@ def test_tuned_gyros_with_all_their_errors(ros_domain, tmp_path):
     """
     Tuned gyros with late, jittering stamps have the readings and parity of the offline run.
 
-    To the bit.
+    They agree to the bit.
     """
     heard = lock_step(ros_domain, tmp_path, values=DTG, more=(topics.IMU_PARITY,))
     run = same_as_offline(DTG, heard)

@@ -20,7 +20,7 @@ def test_an_endless_run_ends_with_its_stamps():
     """
     The last sample is 10 s before the end of stamps, because readings have later stamps.
 
-    It can be packed.
+    This sample can be packed.
     """
     source = endless(2147483600)
     assert source.endless and source.count == 3801

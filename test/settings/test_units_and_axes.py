@@ -71,7 +71,7 @@ def test_a_density_is_the_random_walk_in_other_units(cls, walk, density, one):
     """
     1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz): all quantities derived from N are the same.
 
-    To rounding.
+    They agree to rounding.
     """
     given, same = cls(**{walk: 0.3}), cls(**{density: 0.3 * one})
     a, b = triad_model(given, DT), triad_model(same, DT)

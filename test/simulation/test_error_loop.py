@@ -79,7 +79,7 @@ def test_a_large_start_diverges_where_a_small_one_is_quiet():
     """
     From z0 = 100 m paper_corrected oscillates at its limit; from 10 m it is quiet.
 
-    N = 1000, K = 1, k_z = 0.3, which is linearly stable.
+    The case N = 1000, K = 1, k_z = 0.3 is linearly stable.
     """
     assert half_range(flown(paper(1000, 1.0), 0.30).beta[:, 0]) == pytest.approx(MOST, rel=0.01)
     assert half_range(flown(paper(1000, 1.0), 0.30, 10.0).beta[:, 0]) < 0.05 * DEG
@@ -99,7 +99,7 @@ def test_latency_that_no_loop_bears():
     """
     With a latency of 0.2 s there is a limit cycle of 4.4 rad/s even with a perfect meter.
 
-    N = 100, K_v = 1.
+    The case is N = 100, K_v = 1.
     """
     flight = flown(sliding(100, 1.0), 0.0, offset=1.0, latency=20)
     assert half_range(flight.beta[:, 0]) > 4.0 * DEG

@@ -87,7 +87,7 @@ def test_a_long_latency_moves_limits_as_a_delay_does():
     """
     With one window per correction and a latency of 1 s, limits are roots of the growth.
 
-    There are 100 states.
+    The system has 100 states.
     """
     slow = loop(100, ramps=False)
     found = limits(slow, block(1000, 0.05))

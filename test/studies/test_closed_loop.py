@@ -45,9 +45,9 @@ def test_the_chain_is_the_reduced_loop(case, bound):
     """
     Complete and reduced flights agree to 1e-5 rad in sideslip and 1 cm in offset.
 
-    In 20 s from 100 m. The reduced loop neglects terms of that size: the Coriolis force on
-    velocity errors of metres per second, 3e-4 m/s^2, and the curvature of the leg. paper_corrected
-    sees both as acceleration errors, ten times as large.
+    The flights last 20 s from 100 m. The reduced loop neglects terms of that size: the Coriolis
+    force on velocity errors of metres per second, 3e-4 m/s^2, and the curvature of the leg.
+    paper_corrected sees both as acceleration errors, ten times as large.
     """
     settings = chosen()
     flight, other = fly_case(settings, case), reduced(study_loop(settings), case)

@@ -73,8 +73,8 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
     Every topic agrees with the offline run to the rounding of Cartesian messages.
 
-    As in test_graph. The bits are then the same with the nodes started in another order on a busy
-    machine, and once more when the generator is reset to sample 0 in between.
+    The bounds are those of test_graph. The bits are the same with the nodes in another order on a
+    busy machine, and once more when the generator is reset to sample 0 in between.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', NODES)
     settings = chosen_settings({**VALUES, 'source': 'stream'})

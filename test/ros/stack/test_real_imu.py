@@ -138,7 +138,7 @@ def test_services_answer_in_a_sentence():
     """
     ~/align and ~/reset answer in one sentence before, during and after an alignment.
 
-    With initial.source truth too.
+    They do so with initial.source truth too.
     """
     imu, fixes = vehicle(rest_s=25.0, length_s=60.0)
     messages = messages_of(imu, fixes)

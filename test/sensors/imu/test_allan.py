@@ -70,7 +70,7 @@ def test_ring_laser_shows_floor_and_walk_in_weeks():
     """
     Sixty days of navigation_rlg, one reading per minute, give N, B and K within these bounds.
 
-    N within 5 %, B within 20 %, K within 30 %. In three hours the Allan deviation of the gyro only
+    The bounds are 5 % for N, 20 % for B, 30 % for K. In three hours the deviation of the gyro only
     falls to 0.0023 deg/h at the longest tau, because of white noise. The floor of 0.001 deg/h and
     the random walk appear from four hours on.
     """

@@ -35,7 +35,7 @@ def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
     """
     There is no alarm at rest, turning, rocking, in flight, with or without errors.
 
-    Five seeds each.
+    Each case is run with five seeds.
     """
     closest = 0.0
     for seed in range(5 if errors else 1):

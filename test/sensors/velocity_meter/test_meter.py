@@ -162,7 +162,7 @@ def test_the_surrogate_has_its_errors():
     """
     Mode surrogate has its bias, scales and variances (chi-square at 1e-6).
 
-    With sideslip, N = 4.
+    The flight has sideslip, and windows have 4 cycles.
     """
     beta, n = 0.1, 3000
     s = meter_settings(window__cycles=4, surrogate__k_x=0.01, surrogate__k_z=-0.02,

@@ -22,7 +22,7 @@ def test_jobs_change_no_bit_and_the_worst_run_flies_alone(tmp_path, capsys, monk
     """
     One and two processes give one digest; the command of the worst run gives its end.
 
-    To the bit.
+    The end agrees to the bit.
     """
     monkeypatch.chdir(tmp_path)
     gnss = ['-p', 'gnss_model.use:=true']

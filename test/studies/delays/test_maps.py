@@ -149,7 +149,7 @@ def test_the_direction_decides_the_size_alone():
     """The drift of a rotated body is that of the map in the direction of the axis."""
     settings = figure('rocking', motion__theta_deg=-45.0, **WITHOUT_EARTH).simulation
     found = rocking_map(settings, (90.0,))
-    # With psi = 90 deg the axis to the north is along the right of the body.  Azimuth -90,
+    # With psi = 90 deg the axis to the north is to the right of the body: azimuth -90 deg,
     # elevation 0.
     row, column = (np.flatnonzero(values == value)[0] for values, value in (
         (found.elevation_deg, 0.0), (found.azimuth_deg, -90.0)))

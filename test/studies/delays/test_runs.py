@@ -75,7 +75,7 @@ def test_detuned_motion_2_errs_as_specified(detuning, figures):
     """
     Motion 2 with detuning errs as specified; the predicted slope is not the mean drift.
 
-    The drift rotates.
+    The reason is that the drift rotates.
     """
     shows = figure('figure_2')
     run = fly_run(shows.runs()[shows.shows.detunings_rad_s.index(detuning)])

@@ -29,7 +29,7 @@ def test_the_lag_of_the_fog_is_361_5_us():
     """
     The lag of the FOG, 440 Hz at 100 Hz, is 361.5 us under an oscillation of 1 Hz.
 
-    By the model and by its frequency response. The motion is evaluated at whole nanoseconds, which
+    The model and its frequency response agree. The motion is evaluated at whole nanoseconds, which
     limits the estimate.
     """
     record, chosen = ideal({**DIAGONAL, **FOG}, 20.0)

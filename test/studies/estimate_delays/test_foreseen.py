@@ -145,7 +145,7 @@ def test_eigenvectors_are_those_of_lapack():
     """
     Eigenvectors equal those of LAPACK for random spectra over eight decades.
 
-    And for a singular matrix.
+    The same holds for a singular matrix.
     """
     rng = np.random.default_rng(4)
     for count in (1, 2, 5, 8):

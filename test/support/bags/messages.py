@@ -47,7 +47,7 @@ def write_everything(path, storage, compression, **options):
     """
     Write N messages of every layout in blocks and a few messages of other types.
 
-    Returns {topic: bytes}.
+    Return {topic: bytes} of all messages written.
     """
     expected = {}
     with BagWriter(path, storage, compression, **options) as bag:
