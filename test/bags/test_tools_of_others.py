@@ -55,4 +55,5 @@ def test_foxglove_serves_every_topic(bag):
 
 @pytest.mark.parametrize('name', bag_tools.LINTERS)
 def test_linters_find_nothing(name, bag):
+    """None of three public linters of bags finds anything above the level of information."""
     assert bag_tools.LINTERS[name](bag) == []

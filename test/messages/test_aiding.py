@@ -74,6 +74,7 @@ def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
     Status, st.integers(0, 255), TEXT, TEXT, TEXT, st.lists(st.tuples(TEXT, TEXT), max_size=4).map(
         tuple)), max_size=3))
 def test_any_diagnostic_array_comes_back(frame, statuses):
+    """Any DiagnosticArray is read back to the bit."""
     data = diagnostic_array.pack_diagnostics(7, frame, statuses)
     assert diagnostic_array.read_diagnostics(data) == (7, frame, statuses)
 
@@ -108,6 +109,7 @@ def test_a_velocity_fix_comes_back_from_its_record(fix):
 @given(velocity=PAIR, sigma=PAIR, tan=ANY, tau=PAIR, g=PAIR, start=st.integers(0, 10**16),
        cycles=st.integers(1, 10**5), latency=st.integers(0, 10**11))
 def test_any_velocity_fix_comes_back(velocity, sigma, tan, tau, g, start, cycles, latency):
+    """Any velocity fix is read back from its record to the bit."""
     end = start + cycles * 10**7
     fix = VelocityFix(start, end, cycles, velocity, sigma, tan, tau, g, arrival_ns=end + latency)
     assert velocity_record.read_fix(velocity_record.pack_fix(fix, EPOCH), EPOCH) == fix
@@ -178,8 +180,7 @@ def test_anywhere_on_earth(lat, lon, sigma):
     """
     Anywhere on Earth angles err by 1.5 ulp of pi and half an ulp of 180 deg.
 
-    Two conversions round twice each, and a degree is rounded. A standard deviation is the square
-    root of its variance, to the bit.
+    Two conversions round twice each, and a degree is rounded. Sigmas are restored to the bit.
     """
     fix = replace(FIX, lat=lat, lon=lon, position_sigma=(sigma,) * 3)
     found, = pairs([fix])

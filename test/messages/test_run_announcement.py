@@ -40,5 +40,6 @@ def test_a_run_comes_back_bit_for_bit():
     (pack_diagnostics(0, '', []), 'sim/run holds 0 statuses'),
     (RUN.pack()[:40], 'ends too early')])
 def test_what_is_no_announcement(data, sentence):
+    """An invalid announcement is refused with the field and the expectation."""
     with pytest.raises(ValueError, match=sentence):
         read_announcement(data)

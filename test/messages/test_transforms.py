@@ -44,6 +44,7 @@ def test_several_transforms_of_one_instant():
 
 
 def test_a_pose_that_is_not_finite_is_not_sent():
+    """A pose with NaN is refused instead of packed; the message has the stamp."""
     with pytest.raises(ValueError, match='a transform of 1.000000000 s would hold'):
         TransformWriter(('map', 'odom')).pack(10**9, (float('nan'), *POSE[1:]))
 

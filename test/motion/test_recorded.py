@@ -102,6 +102,7 @@ def test_angles_are_the_recorders(tmp_path):
 @profile(max_examples=40, deadline=None)
 @given(cuts=st.lists(st.integers(0, 400), max_size=8))
 def test_any_cutting_gives_the_same_bits(flown, cuts):
+    """Truth of a recorded flight computed in random blocks has the bits of the whole."""
     motion = flown[0]
     t_ns = np.linspace(-3e9, 17e9, 401).astype(np.int64)
     whole = motion.at(t_ns)
@@ -110,6 +111,7 @@ def test_any_cutting_gives_the_same_bits(flown, cuts):
 
 
 def test_long_runs_are_the_same_bits_as_single_instants(flown):
+    """Truth at 40001 instants has the bits of truth at single instants."""
     motion = flown[0]
     t_ns = np.linspace(-3e9, 17e9, 40001).astype(np.int64)
     whole = motion.at(t_ns)

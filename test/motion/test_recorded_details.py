@@ -19,6 +19,7 @@ FLIGHTS = {'cruise_gv_acclip_rf01.csv.gz': 'refuse', 'uavcircuit_umn_thor_fl75.c
 
 @pytest.mark.parametrize('name', FLIGHTS)
 def test_warnings_name_what_the_rounding_does(shared_data, name):
+    """Real flights give warnings about rounding, cuts, and position steps of 3.18 m."""
     warnings = ' '.join(load(shared_data / 'flights' / name, on_gap=FLIGHTS[name]).warnings)
     assert 'differentiated twice' in warnings
     assert ('cut there' in warnings) == (FLIGHTS[name] == 'cut')
@@ -28,6 +29,7 @@ def test_warnings_name_what_the_rounding_does(shared_data, name):
 
 
 def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
+    """Seven gaps of a real flight are refused with their times; on_gap cut flies a part."""
     path = shared_data / 'flights' / 'uavaero_proto_flt09.csv'
     with pytest.raises(ValueError) as refusal:
         load(path)
@@ -80,6 +82,7 @@ def test_smoothing_is_a_boxcar(tmp_path, window_s):
 
 
 def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
+    """Smoothing over 6 s at 90 deg/s, more than a whole turn, is refused."""
     t = np.arange(601) * 0.1
     path = write(tmp_path / 'r.csv', t, heading=(90.0 * t) % 360.0)
     with pytest.raises(ValueError, match='smoothing_s is 6 s.*turns more than once'):
@@ -108,6 +111,7 @@ def test_exponential_series_is_the_rotation_and_its_rate(largest):
 
 
 def test_gzip_is_the_plain_file(tmp_path, flown):
+    """A gzipped recording gives the truth of the plain file, to the bit."""
     data = open(flown[0].path, 'rb').read()
     packed = tmp_path / 'aggressive.csv.gz'
     packed.write_bytes(gzip.compress(data))
@@ -126,6 +130,7 @@ def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
 
 
 def test_outside_the_recording_is_a_sentence(flown):
+    """An instant outside -3 to 17 s raises a ValueError with these limits."""
     motion = flown[0]
     assert motion.end_s == pytest.approx(14.0) and motion.period_s is None
     assert len(motion.at(np.array([], dtype=np.int64))) == 0

@@ -58,6 +58,7 @@ def rows_of_blocks(navigator, imu, truth):
     *((kind, 'damped', 'integrated') for kind in KINDS),
     *(('quaternion', channel, 'rotation_vector') for channel in CHANNELS)])
 def test_blocks_have_the_bits_of_steps(flight, monkeypatch, how, kind, channel, output):
+    """651 outputs of random blocks, plain and compiled, have the bits of single steps."""
     if how == 'compiled' and compilation.numba() is None:
         pytest.skip('Numba is not installed')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', 10 ** 9 if how == 'plain' else -1)

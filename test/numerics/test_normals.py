@@ -16,6 +16,7 @@ def words(block, count, kind=0):
 
 
 def test_arrays_and_floats_have_the_same_bits():
+    """Normal numbers made from arrays and from floats have the same bits."""
     drawn = words(5, 400)
     assert normals.of_words(drawn).tolist() == normals.of_word_list(drawn.tolist())
 

@@ -120,6 +120,7 @@ def test_drop_outs(ros_domain, tmp_path):
 
 
 def test_twice_the_same_bits_once_under_load_in_any_order(ros_domain, tmp_path):
+    """A second run, under load and with another order of start, gives the same bits."""
     first = lock_step(ros_domain, tmp_path)
     (tmp_path / 'again').mkdir()
     again = lock_step(ros_domain, tmp_path / 'again', tuple(reversed(FORWARD)), load=3)

@@ -178,6 +178,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
     ({'filter': 'paper', 'gnss_model.use': True}, 'expected a filter that takes GNSS: eskf'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
+    """An invalid parameter of aided_navigator gives one message and exit code 2."""
     chain = Chain(ros_domain, tmp_path)
     process = chain.start('aided_navigator', values)
     assert process.wait(60.0) == 2

@@ -90,6 +90,7 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
 
 
 def test_diagnostics_count_fixes_and_outages(ros_domain, tmp_path):
+    """/diagnostics has the numbers of fixes and outages, and whether one is forced."""
     from diagnostic_msgs.msg import DiagnosticArray
     stream = Stream(ros_domain, tmp_path, HEARD)
     said = {}
@@ -137,6 +138,7 @@ def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
     ({'outages.start_s': '[1.0]'}, 'outages.start_s has 1 entries and outages.end_s 0; expected'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
+    """An invalid parameter of gnss gives one message and exit code 2."""
     chain = Chain(ros_domain, tmp_path)
     process = chain.start('gnss', values)
     assert process.wait(60.0) == 2

@@ -182,6 +182,7 @@ def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
      'solution to steer by (guidance.topic): the vehicle flies straight until one comes')],
     ids=('latency', 'nobody'))
 def test_a_loop_that_cannot_be_closed_is_named_once(generator, sentence, ros_domain):
+    """A latency without phase margin, and a topic without publisher, give one message."""
     with Steered(generator) as flight:
         flight.good(520)
         assert flight.said.count(sentence) == 1

@@ -206,6 +206,7 @@ def test_a_jump_back_begins_anew(ros_domain, tmp_path):
     ({'drop_outs.start_s': '[1.0]'}, 'drop_outs'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
+    """An invalid parameter of velocity_meter gives one message and exit code 2."""
     chain = Chain(ros_domain, tmp_path)
     process = chain.start('velocity_meter', values)
     assert process.wait(60.0) == 2

@@ -105,6 +105,7 @@ def test_names_services_and_company(chain, ros_domain):
       'pacing.required': '[strapdown, camera]'}, 4, 'no acknowledgement on sim/ack from camera'),
 ])
 def test_what_is_wrong_is_one_sentence(parameters, code, sentence, chain):
+    """Invalid parameters give one message, exit code 2; a missing consumer exit code 4."""
     simulation = chain.start('simulation', parameters)
     assert simulation.wait(GUARD_S) == code, chain.text(simulation)
     text = chain.text(simulation)

@@ -118,6 +118,7 @@ def test_a_filter_that_is_a_node_of_the_test():
     ({'values': {'rate': 3.0}}, "unknown parameter 'rate'; the nearest known one is 'rate_hz'"),
 ])
 def test_what_is_wrong_is_one_sentence(arguments, sentence):
+    """Unknown or unpublished topics and unknown parameters raise a ValueError."""
     with pytest.raises(ValueError, match=sentence):
         with RunningSimulation(**arguments):
             pass

@@ -136,6 +136,7 @@ def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
 
 
 def test_more_than_the_queue_holds_is_counted(ros_domain):
+    """Of 12 messages that wait for sim/run with a depth of 5 the 7 lost ones are counted."""
     with Announced(imu_sensor={**COMMON, 'topics.depth': 5}) as flight:
         flight.know(1)
         flight.good(12)
@@ -184,6 +185,7 @@ def test_stamps_of_no_announced_run_are_named(run, sentence, flight):
 
 
 def test_what_is_no_announcement_is_dropped(flight):
+    """A malformed sim/run is dropped with a message, and the node continues."""
     flight.fed.nodes['gnss']._announced.take(b'\x00\x01\x00\x00')
     assert 'DiagnosticArray of 4 bytes' in flight.said('gnss')
     flight.good(5)
@@ -197,12 +199,14 @@ def test_what_is_no_announcement_is_dropped(flight):
     ({'pacing.real_time_factor': 10.0, 'publish_clock': True}, 'with a real_time_factor of 10 the '
      'stamps do not follow the wall clock: other nodes need use_sim_time: true and /clock')])
 def test_the_generator_says_who_needs_the_clock(values, says):
+    """If stamps differ from the wall clock, the generator states who needs /clock."""
     said = clock_needed(build(MotionGeneratorSettings, values))
     assert (says in said) if says else not said
     assert ('which publish_clock' in said) == ('lock-step' in said)
 
 
 def test_two_clocks_are_named(ros_domain):
+    """The generator reports a second publisher of /clock."""
     with FedNodes({'motion_generator': {**COMMON, 'publish_clock': True}}) as nodes:
         generator = nodes.nodes['motion_generator']
         generator.count_publishers = lambda name: 2 if name == '/clock' else 1

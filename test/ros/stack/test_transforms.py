@@ -150,6 +150,7 @@ def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domai
 
 
 def test_bytes_that_are_no_transform_are_named(ros_domain):
+    """Malformed bytes on /tf are reported with the topic."""
     with Placed('ins') as flight:
         flight.fed.bus.put('/tf', b'\x00\x01')
         flight.look()
