@@ -51,7 +51,7 @@ def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_pa
     said = capsys.readouterr().out
     assert 'origin of the frame of /ins/odometry is at 55, 37 deg' in said
     assert ('by /truth/fix' if others else 'by /ins/fix') in said
-    # The solution starts at the truth; only rounding of 1e-9 m comes in between.
+    # The solution starts at the truth; only rounding of 1e-9 m is in between.
     assert apart_m(read_poses(target), 55.0, 37.0) < 1e-6
 
 

@@ -47,7 +47,7 @@ def test_a_motion_near_the_pole_is_flown():
 
 
 def test_a_generator_without_an_end_looks_ahead():
-    """An endless flight that will pass the pole is refused before its first message."""
+    """An endless flight past the pole is rejected before its first message."""
     from ins_sim.ros.lock_step.truth_source import TruthSource
     chosen = settings({**POLAR, 'duration_s': 0.0})
     with pytest.raises(ValueError, match='past the pole'):

@@ -150,7 +150,7 @@ def test_two_that_alternate_300_km_apart_do_not_steer(flight):
 
 
 def test_disengaged_it_flies_straight(flight):
-    """The service disengages the autopilot (the flight is then straight) and engages it."""
+    """The service disengages and engages the autopilot."""
     assert flight.engage(False).message == 'disengaged: it flies straight'
     flight.good(50)
     assert flight.why == 'not engaged' and flight.commands[-1][1] == 0.0

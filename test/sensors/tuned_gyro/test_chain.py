@@ -66,6 +66,6 @@ def test_closed_form_in_any_cutting():
 
 
 def test_rotation_vectors_are_refused():
-    """Output rotation_vector is refused for a tuned gyro, which integrates its rate."""
+    """A tuned gyro refuses output rotation_vector, because it integrates its rate."""
     with pytest.raises(ValueError, match='expected integrated: a tuned gyro reads the integral'):
         settings({**DTG, 'output': 'rotation_vector'})
