@@ -1,5 +1,5 @@
 """
-What a message costs in a bag: ours from and into arrays, against rosbags, in one process.
+CPU time of a message in a bag: our arrays compared with rosbags, in one process.
 
 Run: python benchmarks/bags.py [messages of each topic, by default 100000]
 """
@@ -24,13 +24,13 @@ KINDS = (('mcap', 'none'), ('mcap', 'lz4'), ('mcap', 'zstd'), ('sqlite3', 'none'
 TOPICS = (topics.IMU_RAW, topics.INS_ODOMETRY)
 BLOCK = 4096
 REPEATS = 7
-# what a navigator takes; by default everything, covariances too
+# The fields that a navigator reads; by default all are read, covariances too.
 FIELDS = {'imu/data_raw': ('angular_velocity', 'linear_acceleration'),
           'ins/odometry': ('position', 'orientation', 'linear', 'angular')}
 
 
 class Bags:
-    """One set of messages on imu/data_raw and ins/odometry, written and read both ways."""
+    """One set of messages on imu/data_raw and ins/odometry, written and read in both ways."""
 
     def __init__(self, n):
         self._folder = Path(tempfile.mkdtemp())
@@ -40,7 +40,7 @@ class Bags:
         self._stamps = np.arange(n) * 10**7
         self._values = {topic: rng.normal(size=(n, sum(b - a for a, b in topic.writer().runs)))
                         for topic in TOPICS}
-        # rosbags begins with message objects, as we begin with arrays: neither is timed
+        # rosbags begins with message objects, and we with arrays: their creation is not timed.
         self._objects = {topic: [self._store.deserialize_cdr(data, topic.type_name)
                                  for data in topic.writer().pack_block(self._stamps, values)]
                          for topic, values in self._values.items()}
@@ -58,7 +58,7 @@ class Bags:
                                   for topic, values in self._values.items()})
 
     def write_theirs(self, storage, compression):
-        """Write message by message: serialize_cdr and Writer.write."""
+        """Write message by message with serialize_cdr and Writer.write."""
         bag = Writer(self._folder / 'rosbags', version=9,
                      storage_plugin=StoragePlugin[storage.upper()])
         if compression == 'zstd':
@@ -73,13 +73,13 @@ class Bags:
                     bag.write(connection, t_ns, serialize(messages[k], type_name))
 
     def read_ours(self, wanted):
-        """Read what we wrote into arrays."""
+        """Read our bag into arrays."""
         with open_bag(self._folder / 'ours') as bag:
             tables = bag.tables(wanted)
         assert all(len(table) == self._n for table in tables.values())
 
     def read_theirs(self):
-        """Read what we wrote message by message: messages and deserialize."""
+        """Read our bag message by message with messages and deserialize."""
         count, deserialize = 0, self._store.deserialize_cdr
         with Reader(self._folder / 'ours') as bag:
             for connection, _, data in bag.messages():
@@ -93,10 +93,10 @@ class Bags:
 
     def measure(self, kind):
         """
-        Return {what: CPU microseconds of a message}, medians, {what: how many times faster}, by
-        the medians, and the same by the best runs, which other load on the machine hits least.
+        Return {operation: median CPU microseconds of a message}, and two {operation: ratio}.
 
-        The paths take turns, so that what else the machine does meets both.
+        The first ratio is that of the medians, the second that of the best runs, which other load
+        on the machine affects least. The two ways alternate, so that other load affects both.
         """
         everything = dict.fromkeys(FIELDS)
         paths = {'write ours': lambda: self.write_ours(*kind),
@@ -125,7 +125,7 @@ class Bags:
 
 
 def report(n, kinds=KINDS):
-    """Print the figures of every kind; return {kind: (ratios of medians, of best runs)}."""
+    """Print the results of every kind; return {kind: (ratios of medians, of best runs)}."""
     bags, found = Bags(n), {}
     try:
         for kind in kinds:

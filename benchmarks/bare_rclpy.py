@@ -1,12 +1,11 @@
 """
-CPU time of the three processes against three nodes of bare rclpy with the same topics.
+CPU time of the three processes compared with three nodes of plain rclpy on the same topics.
 
 Run it in an environment with rclpy: python benchmarks/bare_rclpy.py [--quick]
 
-The bare nodes are written as the tutorials of ROS write them: typed messages, one callback for
-each message, rclpy's executor. They send the topics of the three processes, with stamps and
-nothing else in them, and calculate nothing. Both take turns, so that other load on the machine
-meets both.
+The plain nodes are written like the tutorials of ROS: typed messages, one callback for each
+message, rclpy's executor. They send the topics of the three processes with nothing but stamps, and
+compute nothing. The two alternate, so that other load on the machine affects both.
 """
 
 import argparse
@@ -23,7 +22,7 @@ from ins_sim.messages import topics
 from ins_sim.ros.transport.qos import message_class
 
 DOMAIN, DEPTH = 92, 1000
-# what each node hears, of which the last is answered, and what it sends
+# For each node: the topics it reads, the last of which it answers, and those it publishes.
 ROLES = {
     'sensor': ((topics.TRUTH_IMU,), (topics.IMU_RAW,)),
     'strapdown': ((topics.TRUTH_ODOMETRY, topics.IMU_RAW),
@@ -34,9 +33,9 @@ ROLES = {
 
 class Bare:
     """
-    One bare node.
+    One node of plain rclpy.
 
-    role: of ROLES.
+    role: key of ROLES.
     """
 
     def __init__(self, role):
@@ -52,7 +51,7 @@ class Bare:
                                            self._answer if answer else self._hear, DEPTH)
 
     def _hear(self, message):
-        """Take a message that is not answered."""
+        """Receive a message that is not answered."""
 
     def _answer(self, message):
         self.send(message.header.stamp)
@@ -64,7 +63,7 @@ class Bare:
             publisher.publish(message)
 
     def generate(self, rate_hz, duration_s):
-        """Publish samples when they are due, all that are due at once."""
+        """Publish all samples that are due."""
         from builtin_interfaces.msg import Time
         start, sent, count = time.monotonic(), 0, round(rate_hz * duration_s) + 1
         while sent < count:
@@ -77,7 +76,7 @@ class Bare:
         time.sleep(1.0)
 
     def spin(self):
-        """Answer until interrupted."""
+        """Answer messages until interrupted."""
         import rclpy
         from rclpy.executors import ExternalShutdownException
         with suppress(KeyboardInterrupt, ExternalShutdownException):
@@ -85,14 +84,14 @@ class Bare:
 
 
 def start_bare(role, parameters, domain):
-    """Start a bare node with the rate and the duration of the parameters."""
+    """Start a plain node with the rate and the duration of the parameters."""
     return subprocess.Popen(
         [sys.executable, __file__, '--role', role, '--rate', str(parameters['rate_hz']),
          '--seconds', str(parameters['duration_s'])], env=environment(domain))
 
 
 def compare(rate_hz, duration_s, rounds):
-    """Print the CPU time of both, and their ratio, by the truth samples that were sent."""
+    """Print the CPU time of both per truth sample that was sent, and their ratio."""
     kinds = {'bare rclpy': {'nodes': tuple(ROLES), 'starter': start_bare}, 'ins_sim': {}}
     cpu, lost, late = ({kind: [] for kind in kinds} for _ in range(3))
     for k in range(rounds):
@@ -109,7 +108,7 @@ def compare(rate_hz, duration_s, rounds):
 
 
 def main():
-    """Print the comparison, or be one of the bare nodes."""
+    """Print the comparison, or run as one of the plain nodes."""
     parser = argparse.ArgumentParser(description=__doc__.strip().splitlines()[0])
     parser.add_argument('--quick', action='store_true', help='short runs')
     parser.add_argument('--role', choices=ROLES, help=argparse.SUPPRESS)

@@ -1,10 +1,10 @@
 """
-What the error budget of an hour takes, wall and CPU time.
+Wall and CPU time of the error budget of an hour.
 
 Run: python benchmarks/budget.py [seconds of motion, by default 3600]
 
-The linear covariance by source on the racetrack and on motion 2, the best of three; then the
-whole verb, with its figures and its page.  The aim is 2 s for an hour.
+The linear covariance by source on the racetrack and on motion 2, the best of three; then the whole
+command, with its figures and its page. The aim is 2 s for an hour.
 """
 
 import sys

@@ -1,5 +1,5 @@
 """
-What one step of a node costs in plain Python, without what receives and publishes.
+CPU time of one step of a node in plain Python, without receiving and publishing.
 
 Run: python benchmarks/core_step.py
 """
@@ -25,7 +25,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.convert import truth_blocks
 
 LATE = {'gyro.delay_us.x': 1.0, 'gyro.delay_us.y': 2.0, 'gyro.delay_us.z': 3.0}
-# every term of the model on both triads, the rotors and the stamps
+# Every error term on both triads, the rotors and the stamps.
 EVERYTHING = {**LATE, **preset('tactical_dtg'), 'temperature.ramp_c_h': 5.0,
               'gyro.errors.bandwidth_hz': [100.0] * 3,
               'gyro.errors.g_sensitivity_deg_h_g': [0.1] * 3,
@@ -39,10 +39,10 @@ EVERYTHING = {**LATE, **preset('tactical_dtg'), 'temperature.ramp_c_h': 5.0,
 
 def step_us(steps=5000, repeats=5, **sensor):
     """
-    Return CPU microseconds of one step of the live IMU and of the live navigator, the best run.
+    Return CPU microseconds of one step of the live IMU and navigator, the best run.
 
-    The IMU works from the stream with three different delays; the navigator matches it with
-    truth and computes solution, errors and drift.
+    The IMU is fed by the stream with three different delays; the navigator matches it with truth
+    and computes solution, errors and drift.
     """
     generator = build(MotionGeneratorSettings, {'motion.kind': 'two_axis'})
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -72,7 +72,7 @@ def tuned_step_us(steps=5000, repeats=5, rate_hz=1000.0):
     Return CPU microseconds of one step of a node with two tuned gyros and EVERYTHING.
 
     From the bytes of truth/imu to those of imu/data_raw and imu/parity: all that imu_sensor does
-    but receive and publish.
+    except receiving and publishing.
     """
     generator = build(MotionGeneratorSettings, {'motion.kind': 'two_axis'})
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -100,7 +100,7 @@ def tuned_step_us(steps=5000, repeats=5, rate_hz=1000.0):
 
 
 def main():
-    """Print the figures."""
+    """Print the results."""
     imu, navigator = step_us()
     print(f'one IMU step {imu:.1f} us, one strapdown step with solution and errors '
           f'{navigator:.1f} us, together {imu + navigator:.1f} us (target 60)')

@@ -1,5 +1,5 @@
 """
-What the study of delays costs: seconds of the verb with all its figures, over those it may take.
+Wall time of the command delay-study with all its figures, and its ratio to the target.
 
 Run: python benchmarks/delay_study.py [seconds of each run, by default 3600]
 """
@@ -14,7 +14,7 @@ MAY_TAKE_S = 60.0
 
 
 def verb_s(length_s):
-    """Return the wall seconds of the verb."""
+    """Return the wall time of the command, s."""
     with TemporaryDirectory() as folder:
         start = monotonic()
         subprocess.run([sys.executable, '-m', 'ins_sim', 'delay-study', '-p',
@@ -24,8 +24,8 @@ def verb_s(length_s):
 
 
 def main(length_s=3600.0):
-    """Print the seconds, and their ratio."""
-    # the first run on a machine compiles
+    """Print the wall time and the ratio."""
+    # The first run on a machine compiles.
     verb_s(60.0)
     spent = verb_s(length_s)
     print(f'delay-study, runs of {length_s:g} s: {spent:.1f} s, {spent / MAY_TAKE_S:.2f} of the '

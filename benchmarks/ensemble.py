@@ -1,11 +1,11 @@
 """
-What a step of one run of an ensemble costs, against the single run and the strapdown of pyins.
+CPU time of a step of one run of an ensemble, of a single run, and of the strapdown of pyins.
 
 Run: python benchmarks/ensemble.py [runs, by default 48] [steps, by default 360000]
 
-CPU time of the process with one thread, ns a run and step, the best of a few: the whole ensemble
-on motion 2 (truth and ideal readings are made once for all runs), and its parts.  pyins (from
-PyPI: python-ins) integrates the increments of one run.
+CPU time of the process with one thread, in ns per run and step, the best of a few: the whole
+ensemble on motion 2 (truth and ideal readings are computed once for all runs), and its parts.
+pyins (from PyPI: python-ins) integrates the increments of one run.
 """
 
 import sys
@@ -31,7 +31,7 @@ def ensemble(runs, steps, assignments):
 
 
 def pyins_ns(steps):
-    """Return what a step of the strapdown of pyins costs, ns."""
+    """Return the CPU time of a step of the strapdown of pyins, ns."""
     import numpy as np
     from pyins import sim, strapdown
     t = 0.01 * np.arange(steps + 1)
@@ -60,9 +60,9 @@ def main(runs=48, steps=360000):
     for name, assignments in (('different biases', BIAS), ('and six white normals', WHITE),
                               ('and in-run biases of the gyros', IN_RUN)):
         work = ensemble(runs, steps, assignments)
-        work()  # compiles
+        work()  # This call compiles.
         few = ensemble(16, steps, assignments)
-        # what truth and ideal readings cost does not count: they are the same for all runs
+        # Truth and ideal readings are not counted, because they are the same for all runs.
         found = (best_ns(work, 1) - best_ns(few, 1)) / ((runs - 16) * steps)
         print(f'{name:32} {found:6.1f} ns a run and step, pyins / this {peer / found:6.1f}',
               flush=True)

@@ -1,7 +1,8 @@
 """
-What the stages of the study of aiding filters cost: CPU microseconds a step of the IMU.
+CPU time of the stages of the filter study, in microseconds per IMU sample.
 
-Also a whole flight of compare-filters, as part of what is asked, and a run of an aided ensemble.
+Also that of a flight of compare-filters, relative to the target, and of a run of an aided
+ensemble.
 
 Run: python benchmarks/filters.py [seconds of flight, by default 600]
 """
@@ -21,13 +22,13 @@ from ins_sim.studies.filters import cases_of, fly_filters
 import numpy as np
 
 FLIGHTS, FLIGHT_S = 24, 3000.0
-# Asked of compare-filters, on two cores.
+# Target for compare-filters on two cores.
 MOST_MIN, CORES = 8.0, 2
 RUNS = 8
 
 
 def timed(work):
-    """Return what the work returns, and its CPU seconds."""
+    """Return the result of the work and its CPU time, s."""
     start = process_time()
     found = work()
     return found, process_time() - start

@@ -1,5 +1,5 @@
 """
-Six nodes in real time, the meter in mode signal: what is lost, and the CPU of each node.
+Six nodes in real time, the meter in mode signal: losses, and CPU time of each node.
 
 Run it in an environment with rclpy: python benchmarks/live_aided.py [seconds, by default 600]
 """
@@ -21,9 +21,9 @@ HEARD = {topics.TRUTH_IMU: RATE_HZ, topics.IMU_RAW: RATE_HZ, topics.INS_ODOMETRY
 
 
 def main(seconds=600.0):
-    """Print what is lost of each topic from its first message on, and CPU seconds by node."""
+    """Print the losses of each topic from its first message on, and CPU seconds by node."""
     seconds = float(seconds)
-    # GNSS is out in the middle third; a name of a node wins over what a file says for all.
+    # GNSS is out in the middle third; a parameter of one node overrides that for all nodes.
     values = {'motion_generator:duration_s': seconds, 'velocity_meter:mode': 'signal',
               'aided_navigator:gnss_model.use': True, 'gnss:outages.start_s': [seconds / 3.0],
               'gnss:outages.end_s': [seconds / 1.5]}

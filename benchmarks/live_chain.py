@@ -20,12 +20,12 @@ from ins_sim.messages import topics
 
 ROOT = Path(__file__).resolve().parent.parent
 NODES = ('imu_sensor', 'strapdown', 'motion_generator')
-# name, rate in Hz, seconds of motion, real-time factor
+# Name, rate in Hz, seconds of motion, real-time factor.
 RUNS = (('real time', 100, 20, 1), ('real time', 1000, 60, 1), ('real time', 2000, 60, 1),
         ('tuned gyros', 1000, 60, 1), ('lock-step', 100, 600, 0))
 QUICK = (('real time', 1000, 10, 1), ('real time', 2000, 10, 1), ('tuned gyros', 1000, 10, 1),
          ('lock-step', 100, 200, 0))
-# two tuned gyros and every term of the model but drop-outs, which would count as losses
+# Two tuned gyros and every error term except drop-outs, which would count as losses.
 TUNED = {**{key: list(value) if isinstance(value, tuple) else value
             for key, value in EVERYTHING.items() if 'drop_out' not in key},
          'input': 'integrated', 'imu_time': 'nominal', 'imu_latency_us': 50.0}
@@ -34,7 +34,7 @@ TUNED = {**{key: list(value) if isinstance(value, tuple) else value
 @dataclass
 class Result:
     """
-    One run, counted from the first solution on.
+    Results of one run, counted from the first solution on.
 
     expected, received: solutions; latency_s: from the publication of a truth sample to the
     reception of its solution in this process; cpu_s: by process; wall_s: first to last solution.
@@ -49,7 +49,7 @@ class Result:
 
     @property
     def lost(self):
-        """Return how many solutions are missing."""
+        """Return the number of missing solutions."""
         return self.expected - self.received
 
     @property
@@ -77,8 +77,8 @@ def start(node, parameters=(), domain=91, arguments=(), **kwargs):
 
 
 def stop(process, number=signal.SIGINT):
-    """End a process, and return its exit code and CPU seconds."""
-    # not send_signal: it would collect an ended process, and its CPU time with it
+    """End a process; return its exit code and CPU seconds."""
+    # Not send_signal, which would reap an ended process and lose its CPU time.
     os.kill(process.pid, number)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -87,10 +87,10 @@ def stop(process, number=signal.SIGINT):
 
 class Listener:
     """
-    Hears ins/odometry, and truth/imu where latency is wanted, or the Topics named.
+    Receive ins/odometry, and truth/imu if latency is measured, or the Topics named.
 
-    DDS notes when a message was published and when it was received, so the queues can be read
-    seldom and this process takes nothing from the two cores that the chain runs on.
+    DDS stores when a message was published and when it was received. The queues can therefore be
+    read seldom, and this process uses little of the two cores on which the chain runs.
     """
 
     def __init__(self, domain, truth=True, heard=None):
@@ -113,11 +113,11 @@ class Listener:
                 times.setdefault(stamp_ns, (info['source_timestamp'], info['received_timestamp']))
 
     def stamps(self, topic):
-        """Return the stamps heard of a Topic."""
+        """Return the received stamps of a Topic."""
         return list(self._queues[list(self._heard).index(topic)][2])
 
     def wait_for(self, *wanted):
-        """Wait until these topics have a publisher and a subscription besides this one."""
+        """Wait until these topics have a publisher and a subscription in addition to this one."""
         end = time.monotonic() + 20.0
         while time.monotonic() < end:
             if all(self.node.count_publishers(t) for t in wanted):
@@ -139,7 +139,7 @@ class Listener:
                       wall_s, {n: code for n, (code, _) in ends.items()})
 
     def close(self):
-        """Leave the domain."""
+        """Shut down the context."""
         self.node.destroy_node()
         self._context.shutdown()
 
@@ -149,13 +149,13 @@ def run(rate_hz, duration_s, real_time_factor, domain=91, nodes=NODES, starter=s
     """
     Run the chain once and return its Result.
 
-    nodes: the executables, that which holds the generator last: it starts when the others are
-    there.  starter: starts one of them.
+    nodes: the executables, the one with the generator last, because it starts when the others have
+    been discovered. starter: function that starts one of them.
     """
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     parameters = {'rate_hz': float(rate_hz), 'duration_s': float(duration_s),
                   'pacing.real_time_factor': float(real_time_factor), **parameters}
-    # in lock-step there is no latency to measure, and a second reader of truth costs time
+    # In lock-step there is no latency to measure, and a second reader of truth costs time.
     listener, running, ends = Listener(domain, real_time_factor > 0), {}, {}
     try:
         for node in nodes[:-1]:

@@ -1,5 +1,5 @@
 """
-The chain in real time at 1 kHz, recorded: what is lost, and the CPU that the recorder takes.
+The chain in real time at 1 kHz, recorded: losses, and CPU time of the recorder.
 
 Run it in an environment with rclpy: python benchmarks/live_recorder.py [seconds, by default 60]
 """
@@ -27,7 +27,8 @@ def main(seconds=60.0):
     seconds = float(seconds)
     with tempfile.TemporaryDirectory() as folder:
         log, path = Path(folder) / 'log', Path(folder) / 'bag'
-        # What the generator sends before a late reader is repaired must not leave its queue.
+        # Samples sent before a late reader has been repaired must stay in the queue of the
+        # generator.
         parameters = {'rate_hz': float(RATE_HZ), 'duration_s': seconds, 'topics.depth': 10_000}
         with open(log, 'w') as stream:
             recorder = start('recorder', {'record.topics': f'[{", ".join(TOPICS)}]',

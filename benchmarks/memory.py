@@ -1,5 +1,5 @@
 """
-The largest memory and the CPU time of runs of any length, each in a process of its own.
+The peak memory and the CPU time of runs of any length, each in a process of its own.
 
 Run: python benchmarks/memory.py [--full]
 """
@@ -14,7 +14,7 @@ from paired import environment
 
 HERE = Path(__file__).resolve().parent
 DAY_S = 86400
-# name, words of the verb, whether it writes into a folder, most MB
+# Name, arguments of the command, whether it writes a folder, memory target in MB.
 HOUR = ('simulate', '--params-file', 'motion_2', '-p', 'duration_s:=3600.0')
 SLOW = ('--params-file', 'motion_2', '-p', 'rate_hz:=1.0', '-p')
 SHORT = (('simulate, 1 h at 100 Hz, with its twin', HOUR, True, 250),
@@ -26,7 +26,7 @@ LONG = (('simulate, 10 days at 1 Hz', ('simulate', *SLOW, f'duration_s:={10 * DA
 
 
 def measure(command):
-    """Return the largest memory, MB, and the CPU seconds of a command."""
+    """Return the peak memory, MB, and the CPU seconds of a command."""
     process = subprocess.Popen(command, env=environment(HERE.parent), stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)

@@ -1,12 +1,12 @@
 """
-What an ensemble of a thousand one-hour runs costs: wall time, CPU time and memory.
+Wall time, CPU time and memory of an ensemble of a thousand one-hour runs.
 
 Run: python benchmarks/monte_carlo.py [runs, by default 1000] [seconds, by default 3600]
 
-On every core, 100 Hz on the racetrack: a FOG with six white normals and an in-run bias, and the
-whole preset imu_tactical_fog.  Wall and CPU time hold the compiling of loops where they are not in
-the cache; memory is the most that this process and its workers have together when a block is
-finished, pages that they share counted once (PSS).
+On every core, 100 Hz on the racetrack: a FOG with six white noises and an in-run bias, and the
+whole preset imu_tactical_fog. Wall and CPU time include compiling if the loops are not in the
+cache. Memory is the largest sum over this process and its workers when a block is finished; shared
+pages count once (PSS).
 """
 
 from multiprocessing import active_children
@@ -29,19 +29,19 @@ IN_RUN = ['gyro.errors.angle_random_walk_deg_sqrt_h:=[0.01, 0.01, 0.01]',
 
 
 def cpu_s():
-    """Return the CPU time of this process and of its children that have ended, s."""
+    """Return the CPU time of this process and of its ended children, s."""
     return sum(usage.ru_utime + usage.ru_stime for usage in map(
         resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
 
 
 def memory_mb():
-    """Return what this process and its children have of the memory, MB."""
+    """Return the memory of this process and its children, MB."""
     total = 0
     for pid in (os.getpid(), *(child.pid for child in active_children())):
         try:
             text = Path(f'/proc/{pid}/smaps_rollup').read_text(encoding='ascii')
         except OSError:
-            # it has ended
+            # The process has ended.
             continue
         total += int(re.search(r'^Pss: +(\d+) kB', text, re.MULTILINE).group(1))
     return total / 1024.0

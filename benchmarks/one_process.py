@@ -1,10 +1,10 @@
 """
-The executable simulation against three processes: steps a second, CPU, loss and latency.
+The executable simulation compared with three processes: steps per s, CPU, loss, latency.
 
 Run it in an environment with rclpy: python benchmarks/one_process.py [--quick]
 
-The two take turns in lock-step, so that other load on the machine meets both; a listener reads
-ins/odometry.  Then each runs in real time at high rates.
+The two alternate in lock-step, so that other load on the machine affects both; a listener reads
+ins/odometry. Then each runs in real time at high rates.
 """
 
 import argparse
@@ -14,13 +14,13 @@ from live_chain import NODES, run
 import numpy as np
 
 ONE = ('simulation',)
-# rate in Hz and seconds of motion of the runs in real time
+# Rate in Hz and seconds of motion of the runs in real time.
 RATES = ((1000, 60), (4000, 60), (8000, 60))
 QUICK = ((1000, 10), (4000, 10), (8000, 10))
 
 
 def cpu_us(result):
-    """Return CPU microseconds a step, all processes together."""
+    """Return CPU microseconds per step of all processes together."""
     return 1e6 * sum(result.cpu_s.values()) / result.received
 
 

@@ -1,9 +1,9 @@
 """
-This checkout against another one: a step, the start of each node, an hour offline.
+Compare this checkout with another one: a step, the start of each node, an hour offline.
 
 Run: python benchmarks/paired.py OTHER [--rounds 7] [--seconds 3600]
 
-The two take turns, so that other load on the machine meets both; printed are the medians of the
+The two alternate, so that other load on the machine affects both. Printed are the medians of the
 CPU time and their ratio (below 1: this checkout is faster).
 """
 
@@ -22,20 +22,20 @@ NODES = ('motion_generator', 'imu_sensor', 'strapdown', 'gnss', 'velocity_meter'
 
 
 def environment(checkout):
-    """Return the environment in which a checkout is imported, bytecode cached as if installed."""
+    """Return the environment that imports a checkout, with bytecode cached as if installed."""
     kept = {k: v for k, v in os.environ.items() if k != 'PYTHONDONTWRITEBYTECODE'}
     return {**kept, 'PYTHONPATH': str(checkout), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 
 
 def probed(checkout, *words):
-    """Return what probe.py prints about a checkout, microseconds."""
+    """Return what probe.py prints for a checkout, microseconds."""
     found = subprocess.run([sys.executable, HERE / 'probe.py', *words], check=True, text=True,
                            env=environment(checkout), cwd=checkout, capture_output=True)
     return float(found.stdout)
 
 
 def offline_us(checkout, seconds):
-    """Return CPU microseconds of ``ins_sim simulate`` of motion 2, files included."""
+    """Return CPU microseconds of ``ins_sim simulate`` of motion 2, including files."""
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
@@ -47,10 +47,10 @@ def offline_us(checkout, seconds):
 
 
 def compare(name, measure, checkouts, rounds):
-    """Measure both in turns; print the medians and their ratio, which is returned."""
+    """Measure both alternately; print the medians, and return their ratio."""
     times = [[], []]
     for k in range(rounds):
-        # The order changes each round: neither is always the one on a warm cache.
+        # The order changes each round, so that none of them always has the warm cache.
         for one in ((0, 1) if k % 2 else (1, 0)):
             times[one].append(measure(checkouts[one]))
     ours, other = map(median, times)

@@ -1,5 +1,5 @@
 """
-What single parts cost: error model, route, recorded flight, velocity meter, a bag of all topics.
+CPU time of single parts: error model, route, recorded flight, velocity meter, a whole bag.
 
 Run: python benchmarks/parts.py [seconds of flight for the bag, by default 3600]
 """
@@ -34,7 +34,7 @@ EVERY_TERM = {
 
 
 def timed(work, repeats=5):
-    """Return the least CPU seconds of a few calls: other load can only add."""
+    """Return the least CPU seconds of a few calls: other load can only increase it."""
     best = float('inf')
     for _ in range(repeats):
         start = process_time()
@@ -44,7 +44,7 @@ def timed(work, repeats=5):
 
 
 def triad_step_us(steps=2048):
-    """Return CPU microseconds of one step of a gyro triad with every term on."""
+    """Return CPU microseconds of one step of a gyro triad with every error term."""
     sensor = build(ImuSensorSettings, {
         'temperature.ramp_c_h': 36.0,
         **{f'gyro.errors.{name}': [value] * 3 for name, value in EVERY_TERM.items()}})

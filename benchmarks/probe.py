@@ -1,10 +1,10 @@
 """
-One timed piece of work in a checkout of any layout; prints CPU microseconds.
+Time one piece of work in a checkout of any layout; prints CPU microseconds.
 
 Run: PYTHONPATH=CHECKOUT python benchmarks/probe.py step | start NODE
 
-Used by paired.py, which compares two checkouts: hence nothing here may depend on where a checkout
-keeps its modules.
+Used by paired.py, which compares two checkouts; nothing here may depend on where a checkout keeps
+its modules.
 """
 
 import importlib
@@ -17,7 +17,7 @@ LATE = ['gyro.delay_us.x:=1.0', 'gyro.delay_us.y:=2.0', 'gyro.delay_us.z:=3.0',
 
 
 def find(name, *modules):
-    """Return the object of a name from the first of these modules that exists and has it."""
+    """Return the object with a name from the first of these modules that has it."""
     for module in modules:
         try:
             return getattr(importlib.import_module('ins_sim.' + module), name)
@@ -27,7 +27,7 @@ def find(name, *modules):
 
 
 def step_us():
-    """Return CPU microseconds of one step of the live IMU and the live navigator, the best run."""
+    """Return CPU microseconds of one step of the live IMU and navigator, the best run."""
     import numpy as np
     parameter_files = importlib.import_module('ins_sim.parameter_files')
     make_motion = find('make_motion', 'core.motion.factory', 'core.motions')
@@ -61,10 +61,9 @@ def step_us():
 
 def start_us(node):
     """
-    Return CPU microseconds that a node takes to import and to be made, beyond a bare node.
+    Return CPU microseconds of importing and making a node, in excess of a plain node.
 
-    The bare node is made first, in the same process, so that the scatter of what rclpy itself
-    takes falls out.
+    The plain node is made first, in the same process, so that the scatter of rclpy itself cancels.
     """
     import rclpy
     rclpy.init()

@@ -1,11 +1,11 @@
 """
-One hour of strapdown navigation at 100 Hz: ours against pyins, same samples, one process.
+One hour of strapdown navigation at 100 Hz: ours and pyins on equal samples, one process.
 
 Run: python benchmarks/pyins_peer.py [seconds of flight, by default 3600]
 
-Both take instantaneous rates and specific forces of the closed-form cruise, a start from truth,
-and give a whole trajectory. pyins (from PyPI: python-ins, extra bench) steps in compiled code,
-which is made before the clock starts.
+Both use instantaneous rates and specific forces of the closed-form cruise, start from the truth,
+and return the whole trajectory. pyins (from PyPI: python-ins, extra bench) steps in compiled code;
+compiling is not timed.
 """
 
 import math
@@ -35,7 +35,7 @@ def flight(seconds):
 
 
 def ours(truth):
-    """Return a function that navigates, and gives latitude, longitude (rad), height at the end."""
+    """Return a function that navigates and returns the last latitude, longitude (rad), height."""
     track = np.stack([truth.lat, truth.lon, truth.height], axis=-1)
     reference = Reference('truth', *(SampledTrack(truth.t_ns, values)
                                      for values in (track, truth.v_n, truth.q_nb)))
@@ -52,7 +52,7 @@ def ours(truth):
 
 
 def theirs(truth):
-    """Return the same of pyins, in NED and FRD."""
+    """Return the same function for pyins, in NED and FRD."""
     import pandas as pd
     from pyins import strapdown, transform, util
     from scipy.spatial.transform import Rotation
@@ -74,7 +74,7 @@ def theirs(truth):
 
 
 def main(seconds=3600.0):
-    """Print CPU seconds, what is off at the end, and the ratio."""
+    """Print CPU seconds, the errors at the end, and the ratio."""
     truth, times = flight(float(seconds)), {}
     paths = {'ins_sim': ours(truth)}
     try:

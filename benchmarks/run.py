@@ -1,5 +1,5 @@
 """
-Run all benchmarks, short ones by default, and print their figures and ratios.
+Run all benchmarks, by default short ones, and print their results and ratios.
 
 Run: python benchmarks/run.py [--full] [--against CHECKOUT]
 """
@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 HERE = Path(__file__).resolve().parent
-# script, words of the short run, words of the full one, whether it needs rclpy
+# Script, arguments of the short run, arguments of the full one, whether it needs rclpy.
 SCRIPTS = (
     ('core_step', [], [], False),
     ('steps', ['60000'], ['360000'], False),
@@ -39,7 +39,7 @@ def has_rclpy():
 
 
 def main():
-    """Run what can be run here; return 1 where one of them failed."""
+    """Run all scripts that can run here; return 1 if one of them failed."""
     parser = argparse.ArgumentParser(description=__doc__.strip().splitlines()[0])
     parser.add_argument('--full', action='store_true', help='as long as the figures of the docs')
     parser.add_argument('--against', metavar='CHECKOUT', help='compare with another checkout too')

@@ -1,5 +1,5 @@
 """
-What the files of a run cost: bytes and CPU time of an hour at 100 Hz, as ratios.
+Size and CPU time of the files of a run of an hour at 100 Hz, as ratios.
 
 Run: python benchmarks/run_files.py
 """
@@ -23,7 +23,7 @@ def timed(call, *arguments):
 
 
 def main():
-    """Print a line for each way to write."""
+    """Print a line for each way of writing."""
     settings = ins_sim.read_settings(['racetrack', 'imu_tactical_fog'], {'duration_s': 3600.0})
     flown = timed(ins_sim.simulate, settings)
     run = ins_sim.simulate(settings)

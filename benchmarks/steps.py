@@ -1,12 +1,12 @@
 """
-What a step of each stage of an offline run costs, plain and compiled, against peers, in one run.
+CPU time of a step of each stage of an offline run, plain, compiled, and of other packages.
 
 Run: python benchmarks/steps.py [steps, by default 360000]
 
-CPU time of one thread, ns a step, the best of a few runs in turns. Plain: the same loops without
+CPU time of one thread, ns per step, the best of a few runs in turns. Plain: the same loops without
 Numba, over a twentieth of the steps. Truth and ideal readings are made before the clock starts,
-except that an IMU on a motion evaluates it. Peers (extra bench): pyins (from PyPI: python-ins)
-generates increments and integrates them, inu generates readings.
+except that an IMU on a motion evaluates it. Other packages (extra bench): pyins (from PyPI:
+python-ins) generates increments and integrates them, inu generates readings.
 """
 
 from dataclasses import replace
@@ -37,7 +37,7 @@ class Run:
         self.motion = read_motion(self.settings.motion_generator)
 
     def sense(self):
-        """Make the readings of the IMU."""
+        """Compute the readings of the IMU."""
         return collected(imu_blocks(self.settings, self.motion))
 
 
@@ -48,7 +48,7 @@ class Known:
         self._truth = truth
 
     def at(self, t_ns):
-        """Return the truth at stamps that follow each other."""
+        """Return the truth at consecutive stamps."""
         first = int(np.searchsorted(self._truth.t_ns, t_ns[0]))
         return self._truth[first:first + len(t_ns)]
 
@@ -71,7 +71,7 @@ def without_errors(run):
 
 
 def stages(steps):
-    """Yield name, goal in ns, and a function that takes all the steps."""
+    """Yield name, target in ns, and a function that runs all steps."""
     for kind, names, goal in (('motion 2', ['motion_2'], 120), ('cruise', ['cruise'], 5000),
                               ('aggressive', ['aggressive'], 5000)):
         run = Run(steps, names, 'source:=motion')
@@ -101,13 +101,13 @@ def stages(steps):
 
 
 def turning(steps):
-    """Return t and the angles roll, pitch, yaw of a turning bench, deg, at steps + 1 instants."""
+    """Return t and the angles roll, pitch, yaw of a rotating bench, deg, at steps + 1 instants."""
     t = 0.01 * np.arange(steps + 1)
     return t, np.stack([np.degrees(0.5 * t), np.full(len(t), -30.0), np.degrees(t)], axis=-1)
 
 
 def pyins(steps):
-    """Yield name and function, of pyins."""
+    """Yield name and function for pyins."""
     from pyins import sim, strapdown
     t, angles = turning(steps)
 
@@ -122,7 +122,7 @@ def pyins(steps):
 
 
 def inu(steps):
-    """Yield name and function, of inu."""
+    """Yield name and function for inu."""
     from inu import mech_inv
     t, angles = turning(steps)
     places = np.tile([np.radians(55.75), np.radians(37.5), 0.0], (len(t), 1))
@@ -131,7 +131,7 @@ def inu(steps):
 
 
 def best_ns(work, steps):
-    """Return the least CPU time of a few calls, ns a step."""
+    """Return the least CPU time of a few calls, ns per step."""
     best = float('inf')
     for _ in range(REPEATS):
         start = process_time()
@@ -149,7 +149,7 @@ def main(steps=360000):
     compilation.PLAIN_SAMPLES = usual
     print(f'{"ns a step":50} {"compiled":>9} {"plain":>9} {"goal":>6}')
     for name, goal, work in stages(steps):
-        work()  # compiles
+        work()  # This call compiles.
         print(f'{name:50} {best_ns(work, steps):9.0f} {plain[name]:9.0f} {goal:6}', flush=True)
     for peer, package in ((pyins, 'python-ins'), (inu, 'inu')):
         try:

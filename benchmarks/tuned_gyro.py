@@ -1,5 +1,7 @@
 """
-What tuned gyros cost: a step and a block of two gyros, plain and compiled, and the paper's study.
+CPU time of tuned gyros: a step and a block of two gyros, plain and compiled, and the study.
+
+The study is that of Sapegin et al. (2016).
 
 Run: python benchmarks/tuned_gyro.py
 """
@@ -31,7 +33,7 @@ INSTRUMENTS = {'two rotors': {}, 'with every error of rotors and pick-offs': ROT
 
 
 def step_us(settings):
-    """Return CPU microseconds of a step, as the live IMU takes them."""
+    """Return CPU microseconds of a step as executed by the live IMU."""
     pair = PairInstrument(settings)
     rates, force = [(0.1, 0.2, 0.3), (0.11, 0.2, 0.3), (0.12, 0.2, 0.3)], (1.0, 2.0, 9.8)
 
@@ -43,7 +45,7 @@ def step_us(settings):
 
 
 def block_us(settings, plain_samples):
-    """Return CPU microseconds of a sample in a block; the first block, which compiles, apart."""
+    """Return CPU microseconds of a sample in a block, without the first block, which compiles."""
     before, compilation.PLAIN_SAMPLES = compilation.PLAIN_SAMPLES, plain_samples
     pair, generator = PairInstrument(settings), np.random.default_rng(1)
     rates, force = generator.normal(size=(BLOCK, 3, 3)), generator.normal(size=(BLOCK, 3))

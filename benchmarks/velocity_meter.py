@@ -1,5 +1,5 @@
 """
-What the choices in docs/design/velocity_meter.md do to the errors of the velocity meter.
+The effect of the choices in docs/design/velocity_meter.md on the errors of the meter.
 
 Run: python benchmarks/velocity_meter.py [windows of one cycle, 2000] [windows of 100, 100]
 """
@@ -21,7 +21,11 @@ BETA = math.radians(6.0)
 
 
 class ShortCorrelator(Correlator):
-    """A correlator that ends with the cycle: n - lag products; over n (biased) or their number."""
+    """
+    A correlator that stops at the end of the cycle: n - lag products in each sum.
+
+    Sums are divided by n (biased) or by the number of products.
+    """
 
     def __init__(self, settings, biased):
         super().__init__(settings)
@@ -37,7 +41,11 @@ class ShortCorrelator(Correlator):
 
 
 def readings(cycles, windows, beta=0.0, biased=None, **signal):
-    """Return the Readings of windows; biased: those of a ShortCorrelator."""
+    """
+    Return the Readings of windows.
+
+    biased: None for the Correlator of the meter, otherwise how ShortCorrelator divides its sums.
+    """
     s = build(VelocityMeterSettings, {'mode': 'signal', 'window.cycles': cycles,
                                       **{f'signal.{k}': v for k, v in signal.items()}})
     field = Field(s)
@@ -56,7 +64,7 @@ def readings(cycles, windows, beta=0.0, biased=None, **signal):
 
 
 def show(name, found, beta=0.0, least=0.0):
-    """Print what the readings are worth; least: speed below which they are refused, m/s."""
+    """Print bias and sigma of the readings; least: speed below which fixes are rejected, m/s."""
     good = [(one.v_x, one.v_z) for one in found if one.status == VALID and one.v_x >= least]
     x = np.array(good) - (250.0 * math.cos(beta), 250.0 * math.sin(beta))
     core = np.subtract(*np.percentile(x, [75, 25], axis=0)) / 1.349

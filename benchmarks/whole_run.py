@@ -1,12 +1,12 @@
 """
-An hour at 100 Hz as a whole process, files included: ours against pyins, taking turns.
+An hour at 100 Hz as a whole process, including files: ours and pyins, alternately.
 
 Run: python benchmarks/whole_run.py [seconds of the run, by default 3600]
 
 Ours is ``ins_sim simulate`` of motion 2 in one pass: truth, readings with a late channel,
 solution, errors, drift, prediction, summary and figure. pyins (from PyPI: python-ins, extra bench)
-generates increments of roll, pitch and heading that run likewise, integrates them and saves
-trajectories and increments. Both with what they compile already in the cache.
+generates increments from similar angles of roll, pitch and heading, integrates them and saves
+trajectories and increments. Compiled code of both is in the cache.
 """
 
 from pathlib import Path
@@ -35,7 +35,7 @@ def theirs(seconds, path):
 
 
 def main(seconds='3600'):
-    """Print CPU seconds, the largest memory and the ratio."""
+    """Print CPU seconds, the peak memory and the ratio."""
     commands = {'ins_sim': [sys.executable, '-m', 'ins_sim.cli.main', 'simulate', '--params-file',
                             'motion_2', '-p', f'duration_s:={float(seconds)}', '--no-twin', '-o'],
                 'pyins': [sys.executable, __file__, '--theirs', seconds]}
@@ -49,7 +49,7 @@ def main(seconds='3600'):
         for k in range(REPEATS + 1):
             for name, command in commands.items():
                 memory, spent = measure([*command, str(Path(folder) / f'{name}_{k}')])
-                # The first one may have to compile.
+                # The first run may have to compile.
                 if k:
                     times[name].append(spent)
                 if k == REPEATS:

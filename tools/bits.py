@@ -141,7 +141,7 @@ def compare():
 
 
 def _environment(folder, version):
-    """Return the Python of a virtual environment with a version of NumPy, or None, saying why."""
+    """Return the Python of a virtual environment with a version of NumPy, or None."""
     venv.create(folder, with_pip=True)
     python = folder / 'bin' / 'python'
     ended = subprocess.run([python, '-m', 'pip', 'install', '--quiet', version, *NEEDED],

@@ -81,7 +81,7 @@ def choose_python(with_ros):
             facts = probe(python)
             if facts and facts['rclpy'] and tuple(facts['version'][:2]) >= OLDEST:
                 return facts
-        # Wheels beside the libraries of a sourced ROS would mix the two.
+        # Wheels next to the libraries of a sourced ROS would mix the two.
         sys.exit('ins_sim: ROS 2 {0} is sourced, but neither {1} nor /usr/bin/python3 is a Python '
                  '3.10 or newer that imports rclpy: install ros-{0}-rclpy, or use a shell without '
                  'ROS to get rclpy from PyPI'.format(os.environ['ROS_DISTRO'], sys.executable))
@@ -170,13 +170,13 @@ def install(facts, with_ros, fresh):
             limits = ['--constraint', os.path.join(VENV, 'constraints.txt')]
             with open(limits[1], 'w') as stream:
                 stream.write('numpy=={}\n'.format(facts['numpy']))
-        # Wheels first, for there may be no compiler.
+        # Wheels first, because there may be no compiler.
         run(pip + limits + ['--prefer-binary', '--editable', ROOT + '[test]'], with_ros,
             'installing')
 
 
 def run(command, with_ros, doing):
-    """Run a step of the set-up, or end with a sentence."""
+    """Run a step of the set-up, or exit with a message."""
     # In a group of its own, so that Ctrl-C reaches this process alone: the step would print a
     # traceback.
     step = subprocess.Popen(command, env=venv_environment(with_ros), stdin=subprocess.DEVNULL,
@@ -205,14 +205,14 @@ def set_up():
     if os.path.exists(STAMP):
         os.remove(STAMP)
     install(facts, with_ros, fresh=not same_place)
-    # Written last: without it the next call takes .venv for half-made and starts over.
+    # Written last: without it the next call regards .venv as incomplete and starts over.
     with open(STAMP, 'w') as stream:
         json.dump({'venv': VENV, 'with_ros': with_ros, 'digest': digest}, stream)
     return with_ros
 
 
 def main():
-    """Set .venv up, then become the command."""
+    """Set up .venv, then replace this process by the command."""
     with open(VENV + '.lock', 'w') as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         with_ros = set_up()
@@ -229,7 +229,7 @@ def main():
 
 
 def started():
-    """Run ``main``; end with one sentence after an interruption."""
+    """Run ``main``; after an interruption exit with one message."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         main()

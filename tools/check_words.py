@@ -15,13 +15,13 @@ import sys
 import tempfile
 
 ROOT = Path(__file__).resolve().parents[1]
-# Abbreviations and names of the field that codespell takes for misspelt words.
+# Abbreviations and technical names that codespell reports as misspelt.
 TERMS = ('ned', 'nees', 'empy', 'shepperd', 'fro')
 # The text is plain ASCII, and comparisons of exact words can be meant.
 UNUSED = ('typography', 'uncomparables', 'misc.phrasal_adjectives')
-# What proselint takes for something else: a name, "the first of all runs", and decimation.
+# What proselint misinterprets: a name, "the first of all runs", and decimation.
 MEANT = ("'OMG'", "'first of all'", "'decimate'")
-# Of repeated words only plain ones count: constants, axes and numbers may follow each other.
+# Only repetitions of plain words count: constants, axes and numbers may be repeated.
 REPEATED = re.compile(r"'([a-z]{2,})\s\1'")
 
 
@@ -38,7 +38,7 @@ def prose_of_module(text):
              if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))]
     found = '\n\n'.join(ast.get_docstring(node) or '' for node in nodes)
     found = re.sub(r'``[^`]*``', ' _ ', found)
-    # The names of parameters, which descriptions follow, are no part of the sentence.
+    # The names of parameters that precede descriptions are not part of the sentence.
     found = re.sub(r'^[\w, ]+ : ', 'The ', found, flags=re.MULTILINE)
     return re.sub(r'^(    |-+$).*$', '', found, flags=re.MULTILINE)
 
@@ -60,7 +60,7 @@ def run(command, folder):
                            text=True, check=False)
     if found.returncode not in (0, 1, 65):
         raise SystemExit(f'{command[0]}: {found.stderr.strip() or found.stdout.strip()}')
-    # A finding may quote a line break: it reaches to the next place, "file:line".
+    # A finding may contain a line break: it extends to the next location, "file:line".
     return [' '.join(text.split()) for text in re.split(r'\n(?=\S+:\d+:)', found.stdout)
             if text.strip()]
 

@@ -118,7 +118,7 @@ def with_gaps(source, target):
 
 
 def recorded(data, folder):
-    """Yield (name, verb, arguments) over recorded data; folder: for a file made of them."""
+    """Yield (name, verb, arguments) for recorded data; folder: for a file derived from them."""
     flights, imu, bags = data / 'flights', data / 'imu_ref', data / 'rosbags'
     for name, start in (('cruise_gv_acclip_rf01.csv.gz', 1000.0),
                         ('uavcircuit_umn_thor_fl75.csv.gz', 100.0)):
@@ -159,7 +159,7 @@ def of_text(text):
 
 
 def command(arguments):
-    """Run a verb; return the exit code and what it printed."""
+    """Run a verb; return the exit code and the output."""
     printed = io.StringIO()
     with redirect_stdout(printed):
         code = main(arguments)

@@ -1,8 +1,8 @@
 """
 Draw docs/figures/data_flow.svg and write the import table of docs/explanation/architecture.md.
 
-The table is MAY_IMPORT of the architecture test; the picture shows the way of the data from the
-motion to the errors. Run it again after a change of either: ``python tools/draw_architecture.py``.
+The table is MAY_IMPORT of the architecture test; the picture shows how data flow from the motion
+to the errors. Run it again after a change of either: ``python tools/draw_architecture.py``.
 """
 
 from pathlib import Path
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / 'docs' / 'explanation' / 'architecture.md'
 PICTURE = ROOT / 'docs' / 'figures' / 'data_flow.svg'
 MARKS = ('<!-- import table: python tools/draw_architecture.py -->', '<!-- end of the table -->')
-# name: x, y of the centre, text
+# Name: x, y of the centre, text.
 BOXES = {
     'motion': (1.0, 2.0, 'Motion\nclosed form, route,\nrecording, guided'),
     'stream': (1.0, 0.6, 'Truth adapter\nGazebo and other\nsimulators'),
@@ -35,7 +35,7 @@ ARROWS = (('motion', 'truth'), ('stream', 'truth'), ('truth', 'imu'), ('truth', 
 
 
 def draw(path):
-    """Draw the way of the data into an SVG file."""
+    """Draw the data flow as an SVG file."""
     rcParams.update({'svg.hashsalt': 'ins_sim', 'svg.fonttype': 'none', 'font.size': 10})
     figure = Figure(figsize=(10.5, 4.0))
     FigureCanvasSVG(figure)

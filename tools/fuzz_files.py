@@ -26,7 +26,7 @@ from support.hostile.files import Hostile, KINDS  # noqa: E402
 
 MEMORY_BYTES = 10 ** 9
 LIMIT_S = 10
-# Of a file for which a reader waits; a loaded machine needs some of it.
+# Wall-clock limit for a file whose reader waits; a loaded machine needs some of it.
 LIMIT_WAITING_S = 120
 BLOCK = 250
 
@@ -40,7 +40,7 @@ def _too_long(number, frame):
 
 
 def try_block(seeds):
-    """Return outcomes {(kind, outcome): count} and failures, sentences, of some seeds."""
+    """Return outcomes {(kind, outcome): count} and failure messages for some seeds."""
     used = int(Path('/proc/self/statm').read_text().split()[0]) * os.sysconf('SC_PAGE_SIZE')
     resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY_BYTES,) * 2)
     signal.signal(signal.SIGALRM, _too_long)
@@ -66,7 +66,7 @@ def try_block(seeds):
 
 
 def main():
-    """Try COUNT files and print the counts; return the exit code."""
+    """Try COUNT files and print the numbers; return the exit code."""
     parser = argparse.ArgumentParser(description='Try mutated files.')
     parser.add_argument('count', nargs='?', type=int, default=50000)
     parser.add_argument('--first', type=int, default=0, metavar='SEED')
@@ -75,7 +75,7 @@ def main():
     last = chosen.first + chosen.count
     blocks = [range(k, min(k + BLOCK, last)) for k in range(chosen.first, last, BLOCK)]
     outcomes, failures = Counter(), []
-    # A child for each block: the limit of the memory counts from its start.
+    # A child for each block: the memory limit counts from its start.
     with ProcessPoolExecutor(chosen.jobs, max_tasks_per_child=1) as pool:
         for found, wrong in pool.map(try_block, blocks):
             outcomes += found

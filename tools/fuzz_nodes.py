@@ -1,8 +1,8 @@
 """
 Run all nodes while invalid messages are sent: python tools/fuzz_nodes.py [COUNT] [SEED].
 
-Prints the number of messages by kind and topic.  After a failure it prints seed and message, and
-exits with 1.  It is test/ros/test_hostile_nodes.py with any number of messages, and with all
+Prints the number of messages by kind and topic. After a failure it prints seed and message, and
+exits with 1. It is test/ros/test_hostile_nodes.py with any number of messages, and with all
 settings of VARIANTS in turn.
 """
 
@@ -19,12 +19,12 @@ os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 # Number of messages for one set of nodes, and between two intervals without invalid messages.
 RUN, ATTACK = 20_000, 2500
-# of an attack and its calm stretch
+# If sending takes longer, all threads print where they are, and the tool exits.
 HANG_S = 600
 
 
 def fuzz(count, seed):
-    """Send so many messages; return Counters of what was tried and of what the net caught."""
+    """Send COUNT messages; return Counters of the messages sent and of unexpected exceptions."""
     from support.hostile.flight import HostileFlight
     tried, rescued, sent, held = Counter(), Counter(), 0, 0
     while (done := sum(tried.values())) < count:
@@ -51,7 +51,7 @@ def fuzz(count, seed):
 
 
 def main(words):
-    """Return the exit code."""
+    """Run the tool; return the exit code."""
     count = int(words[0]) if words else 2_000_000
     seed = int(words[1]) if len(words) > 1 else 1
     try:

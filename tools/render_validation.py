@@ -1,12 +1,12 @@
 """
-Render docs/explanation/validation.md from docs/figures/validation.md.in and
-docs/figures/validation.json.
+Render docs/explanation/validation.md from its template and the recorded figures.
 
 Usage: python tools/render_validation.py [--take build/figures.json] [--check]
 
-The template is the page with figures as {{name:format}} or {{name[index]:format}}; the format is
-that of Python. ``--take`` first copies the figures that the page shows from the file of a run of
-the tests; ``--check`` writes nothing and fails if the page differs from its rendering.
+The template, docs/figures/validation.md.in, is the page with figures as {{name:format}} or
+{{name[index]:format}}; the format is that of Python. The figures are in
+docs/figures/validation.json. ``--take`` first copies the figures that the page shows from the file
+of a run of the tests; ``--check`` writes nothing and fails if the page differs from its rendering.
 """
 
 import argparse
@@ -38,7 +38,7 @@ def render(template, figures):
 
 
 def take(run, figures, wanted):
-    """Return the figures, those wanted replaced by what a run has found."""
+    """Return the figures, with the shown ones replaced by those that a run has measured."""
     new = {name: {**figure, 'made_with': run['made_with']}
            for name, figure in run['figures'].items() if name in wanted}
     return dict(sorted({**figures, **new}.items())), sorted(new)

@@ -25,7 +25,7 @@ NONE_CHOSEN = 5
 
 
 def main(kind):
-    """Run the calls of a kind, whatever the first one finds; return 1 where a test failed."""
+    """Run all calls of a kind, even if one fails; return 1 if a test failed."""
     start, failed = time.monotonic(), False
     for words, marks in CALLS[kind]:
         code = subprocess.run([sys.executable, '-m', 'pytest', 'test', *words, '-m', marks,

@@ -38,7 +38,7 @@ class Watched:
         self.process, self.log, self.rows = process, log, []
 
     def look(self, now_s):
-        """Note what it takes now; nothing once it has ended."""
+        """Store its present memory, handles and CPU time; nothing after its end."""
         folder = Path('/proc') / str(self.process.pid)
         try:
             words = (folder / 'stat').read_text().rpartition(')')[2].split()
@@ -52,12 +52,12 @@ class Watched:
 
     @property
     def cpu_s(self):
-        """Return the CPU time of the last look, s."""
+        """Return the CPU time at the last look, s."""
         return self.rows[-1][3] if self.rows else 0.0
 
 
 def machine_cpu_s():
-    """Return the CPU time that the whole machine has spent, the hypervisor's share included, s."""
+    """Return the CPU time of the whole machine, s, including that of the hypervisor."""
     values = [int(v) for v in Path('/proc/stat').read_text().split('\n')[0].split()[1:9]]
     # All states except idle and waiting for disks.
     return (sum(values) - values[3] - values[4]) * TICK_S
@@ -74,7 +74,7 @@ def start(name, parameters, folder, environment):
 
 
 def run_chain(length_s, rate_hz, folder):
-    """Run the nodes; return them by name, and how much of a core others took each second."""
+    """Run the nodes; return them by name, and the CPU use by other processes in each second."""
     environment = {'ROS_DOMAIN_ID': str(50 + os.getpid() % 50),
                    'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', **os.environ}
     common = {'rate_hz': float(rate_hz)}
@@ -117,13 +117,13 @@ def run_chain(length_s, rate_hz, folder):
 
 
 def last_words(running):
-    """Return what the nodes that ended have said last."""
+    """Return the last messages of the nodes that have ended."""
     return '; '.join(f'{name}: {(w.log.read_text().splitlines() or ["nothing"])[-1]}'
                      for name, w in running.items() if w.process.poll() is not None)
 
 
 def show_processes(running, length_s):
-    """Print memory, its slope a day, handles and CPU of each process."""
+    """Print memory, its slope per day, handles and CPU time of each process."""
     for name, watched in running.items():
         rows = np.array(watched.rows or [(0.0,) * 4])
         steady = rows[rows[:, 0] >= SETTLING * rows[-1, 0]]
@@ -134,7 +134,7 @@ def show_processes(running, length_s):
 
 
 def show_losses(folder, said, rate_hz):
-    """Print losses and holes of each topic and the latency of the chain; return the sum lost."""
+    """Print losses and gaps of each topic and the latency of the chain; return the total lost."""
     with open_bag(folder / 'bag') as bag:
         tables = bag.tables({topic.name: () for topic in TOPICS})
     counted = {name: int(lost) for name, lost in re.findall(

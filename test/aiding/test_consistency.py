@@ -1,4 +1,4 @@
-"""The covariance of the eskf against Monte Carlo: errors (NEES) and innovations (NIS)."""
+"""The covariance of the eskf compared with Monte Carlo: errors (NEES) and innovations (NIS)."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.aiding import kalman, navigator
@@ -18,9 +18,9 @@ from support.studies import spread
 
 RUNS = 16
 EVERY_NS = 60 * 10**9
-# Horizontal position and velocity, and attitude: the states that aids and sensors affect.
+# Horizontal position and velocity, and attitude: the states that the aiding affects.
 STATES = [0, 1, 3, 4, 6, 7, 8]
-# Only errors that are in the model: biases, and white noise.
+# Only errors that the filter models: biases, and white noise.
 IMU = ('gyro.errors.turn_on_bias_sigma_deg_h:=[0.05, 0.05, 0.05]',
        'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.01, 0.01, 0.01]',
        'accelerometer.errors.turn_on_bias_sigma_ug:=[200.0, 200.0, 200.0]',
@@ -74,7 +74,7 @@ def test_a_mean_stamped_at_its_end_is_forty_times_too_far_off(monkeypatch, figur
 
 
 def consistency_of(assignments):
-    """Return the NIS of the fixes of ten minutes of the study flight, and their lateral sigma."""
+    """Return NIS of the fixes in ten minutes of the study flight, and their lateral sigma, m/s."""
     settings = parameter_files.read_aided(
         [resources.config(name) for name in ('route_flight',)],
         ['duration_s:=600.0', *IMU, *assignments])
@@ -83,12 +83,16 @@ def consistency_of(assignments):
 
 
 def by_time(entry):
-    """Return the key by which fixes are sorted."""
+    """Return the sort key of a fix: its instant and its source."""
     return entry[:2]
 
 
 def consistency(assignments, run):
-    """Return NEES (n,) every minute of ten, and the NIS and its freedom of every fix, of a run."""
+    """
+    Return the results of one run of ten minutes.
+
+    NEES (n,) is taken every minute; NIS, with its degrees of freedom, at every fix.
+    """
     settings = parameter_files.read_aided(
         [resources.config(name) for name in ('gnss_outage_flight',)],
         ['duration_s:=600.0', *IMU, *assignments])

@@ -1,9 +1,9 @@
 """
-Check every matrix of the linear error models of the aiding filters against differences of flights.
+Every matrix of the linear error models of the aiding filters is compared with finite differences.
 
-The tests run for all filters of the table that name states; a new filter of the table is checked
-without a change here. Errors are added with the filter's own ``correct``, so that its signs are
-checked too.
+The differences are between flights with and without an added error. The tests run for all filters
+of the table that name states; a new filter of the table is checked without a change here. Errors
+are added with the filter's own ``correct``, so that its signs are checked too.
 """
 
 import math
@@ -113,7 +113,7 @@ def size_of(state):
 
 
 def check_transition(cls, case):
-    """Hold each column of the transition matrix to central differences; return the worst."""
+    """Compare each column of the transition matrix with central differences; return the worst."""
     start = Flight(cls, case)
     nominal = start.with_error(0, 0.0).fly()
     phi, states, worst = nominal.filter.transition(nominal.ins), cls.states, 0.0
@@ -130,7 +130,7 @@ def check_transition(cls, case):
             apart = abs(0.5 * (up[state] - down[state]) - phi[row, k] * size)
             assert apart <= bound, (state, states[k], apart, part)
             worst = max(worst, apart / bound)
-        # Check the rows of the filter's own states through their effect on the innovation.
+        # The rows of the filter's own states are checked through their effect on the innovation.
         _, h = nominal.velocity()
         expected, of_now = h[:, k], 0.0
         if cls.observed_at == 'end':
@@ -145,7 +145,7 @@ def check_transition(cls, case):
 
 
 def check_present(cls, case, model):
-    """Hold a matrix of the present errors to central differences; return it."""
+    """Compare a matrix of the present errors with central differences; return it."""
     nominal = Flight(cls, case).fly()
     z, h = model(nominal, nominal)
     assert h.shape == (len(z), len(cls.states))
@@ -173,7 +173,11 @@ def test_transition_is_the_derivative_of_the_strapdown(name, case):
 @pytest.mark.parametrize('case', CASES.values(), ids=CASES)
 @pytest.mark.parametrize('name', [n for n in LINEAR if filter_class(n).observed_at == 'end'])
 def test_velocity_matrix_is_the_derivative_of_the_innovation(name, case):
-    """With respect to present errors; for errors at the start of the window see the test above."""
+    """
+    The matrix of the velocity meter agrees with differences with respect to present errors.
+
+    Errors at the start of the window are covered by the test above.
+    """
     check_present(filter_class(name), case, velocity_model)
 
 
@@ -246,6 +250,6 @@ class WrongAntenna(ErrorStateFilter):
     (WrongTransition, check_transition, ()), (WrongMean, check_transition, ()),
     (WrongMeter, check_present, (velocity_model,)), (WrongAntenna, check_present, (Flight.gnss,))])
 def test_a_wrong_matrix_is_found(cls, check, more):
-    """Each check fails if one entry of its matrix is wrong."""
+    """The check of a matrix fails if one entry of this matrix is wrong."""
     with pytest.raises(AssertionError):
         check(cls, CASES['climbing turn'], *more)

@@ -1,4 +1,4 @@
-"""The scheme of Ivanov (2015) as printed and corrected: its error in turns, and its stability."""
+"""The aiding scheme of Ivanov (2015), as printed and corrected: error in turns, and stability."""
 
 import math
 
@@ -57,7 +57,7 @@ def test_the_printed_innovation_takes_a_turn_for_an_error_of_8_4_m_s2(figures):
 
 
 def test_the_printed_scheme_refuses_a_turn_and_says_so():
-    """In a turn nothing is corrected, and the reason tells which filters to use."""
+    """In a turn the printed scheme corrects nothing, and the reason names filters for turns."""
     results, left = fly(circle(), 'paper', 3)
     assert not any(r.taken for r in results)
     assert results[-1].reason.startswith('filter paper refuses a window in which the body turns')
@@ -66,14 +66,14 @@ def test_the_printed_scheme_refuses_a_turn_and_says_so():
 
 
 def roots(gain):
-    """Return the moduli of z^2 - (1 - K) z + K, the error of the printed scheme."""
+    """Return the moduli of the roots of z^2 - (1 - K) z + K, the error of the printed scheme."""
     return np.abs(np.roots([1.0, -(1.0 - gain), gain]))
 
 
 @pytest.mark.parametrize('gain', [0.1, 0.172, 0.5, 0.9, 1.0])
 def test_the_printed_scheme_converges_as_its_polynomial_says(gain):
     """
-    On a straight leg every error obeys the recursion e_{k+1} = e_k - K (e_k + e_{k-1}).
+    On a straight leg the printed scheme obeys the recursion e_{k+1} = e_k - K (e_k + e_{k-1}).
 
     Bound: 1 % of the first error, for the Schuler oscillation over two minutes and for gravity.
     """
@@ -96,9 +96,13 @@ def test_the_printed_scheme_converges_as_its_polynomial_says(gain):
 
 
 def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):
-    """The largest root is smallest at K = 3 - 2 sqrt 2, where both have equal size; 1 at K = 1."""
+    """
+    The greatest root of the printed scheme is smallest at K = 3 - 2 sqrt 2; at K = 1 it is 1.
+
+    At the smallest value, K = 0.172, both roots have equal moduli.
+    """
     gains = np.linspace(0.001, 1.2, 100000)
-    # The larger root of the quadratic, for all gains at once.
+    # The larger root of the quadratic, for all gains.
     a, b = 1.0 - gains, np.emath.sqrt((1.0 - gains) ** 2 - 4.0 * gains)
     largest = np.maximum(np.abs(a + b), np.abs(a - b)) / 2.0
     best = gains[largest.argmin()]
@@ -111,7 +115,7 @@ def test_the_fastest_gain_of_the_printed_scheme_is_0_172(figures):
 @pytest.mark.parametrize('gain', [0.3, 0.5, 1.0, 1.9])
 def test_the_corrected_scheme_is_stable_up_to_a_gain_of_2(gain):
     """
-    On a straight leg e_{k+1} = (1 - K) e_k, to within 1 % of the first error.
+    On a straight leg the corrected scheme obeys e_{k+1} = (1 - K) e_k, to 1 % of the first error.
 
     In a turn a remaining velocity error rotates in b and would appear as an acceleration.
     """
@@ -122,7 +126,7 @@ def test_the_corrected_scheme_is_stable_up_to_a_gain_of_2(gain):
 
 
 def test_a_constant_offset_of_the_instrument_is_never_seen():
-    """Only differences of window means are used: a constant velocity offset is unobservable."""
+    """A constant velocity offset of the meter has no effect: only differences are used."""
     for name in ('paper', 'paper_corrected'):
         exact, _ = fly(straight(), name, 4)
         off, _ = fly(straight(), name, 4, offset=(3.0, -2.0))

@@ -19,7 +19,8 @@ SECONDS = 12
 MOTION = circle()
 SAMPLES = samples_of(MOTION, 100 * SECONDS + 1, (0.01, -0.02, 0.0))
 METER_FIXES = perfect_fixes(MOTION, 2 * SECONDS, CYCLES, (0.3, -0.2), (0.5, 0.6))
-# The printed scheme is for straight legs: it would use no fix in the turn of the other flight.
+# The printed scheme works on straight legs only: it would reject every fix in the turn of the
+# other flight.
 LEG = straight()
 LEG_SAMPLES = samples_of(LEG, 100 * SECONDS + 1, (0.01, -0.02, 0.0))
 LEG_FIXES = [(METER, fix) for fix in perfect_fixes(LEG, 2 * SECONDS, CYCLES, (0.3, -0.2),
@@ -78,7 +79,7 @@ def test_late_fixes_give_the_solution_of_punctual_ones_to_the_bit(name, seed):
 
 
 def test_an_innovation_is_that_of_the_instant_of_the_fix():
-    """A fix processed late has the innovation and NIS of the punctual one."""
+    """A fix processed 2.345 s late has the innovation and NIS of the fix processed on time."""
     one = METER_FIXES[7]
     punctual = fly(navigator(), [(METER, one)])
     delayed = fly(navigator(), late([(METER, one)], [2_345_000_000]))
@@ -87,7 +88,7 @@ def test_an_innovation_is_that_of_the_instant_of_the_fix():
 
 
 def test_a_fix_older_than_the_buffer_is_not_taken():
-    """The reason tells the age of the fix; nothing else changes."""
+    """A fix older than buffer_s is rejected with its age; the solution is unchanged."""
     nav, free = navigator(buffer_s=2.0), navigator(buffer_s=2.0)
     taken = fly(nav, late(FIXES[:1], [5 * 10**9]))
     fly(free, [])
@@ -97,7 +98,7 @@ def test_a_fix_older_than_the_buffer_is_not_taken():
 
 
 def test_a_fix_that_comes_twice_is_taken_once():
-    """The second one is not used, and the reason says so."""
+    """A fix delivered twice is used once; the reason of the second is 'has come before'."""
     nav, once = navigator(), navigator()
     taken = fly(nav, [FIXES[3], FIXES[3]])
     fly(once, [FIXES[3]])
@@ -107,7 +108,7 @@ def test_a_fix_that_comes_twice_is_taken_once():
 
 
 def test_a_window_that_the_solution_does_not_cover_is_not_taken():
-    """The fix of a window that begins before the solution is not used."""
+    """A fix whose window begins before the solution is not used."""
     nav = navigator()
     taken = fly(nav, [FIXES[0], FIXES[1]], SAMPLES[10:])
     assert [t.outcome.taken for t in taken] == [False, True]
@@ -141,7 +142,7 @@ NAN = math.nan
     (GNSS, replace(GNSS_FIX, velocity_sigma=(1.0, NAN, 1.0)), 'expected positive ones'),
 ])
 def test_what_can_be_no_fix_is_refused_in_one_sentence(source, fix, sentence):
-    """An impossible fix is dropped with one sentence; the navigator continues as if without it."""
+    """An impossible fix is dropped with one message; the solution is as if it had not come."""
     nav, without = navigator(), navigator()
     with pytest.raises(StreamFault) as refusal:
         nav.take(source, fix)
@@ -154,7 +155,7 @@ def test_what_can_be_no_fix_is_refused_in_one_sentence(source, fix, sentence):
 
 
 def test_a_fix_from_the_future_is_refused():
-    """A fix further ahead of the newest reading than a fix may be late is rejected."""
+    """A fix further ahead of the newest reading than the greatest delay of a fix is rejected."""
     nav = navigator(buffer_s=2.0)
     fly(nav, [], SAMPLES[:100])
     with pytest.raises(StreamFault, match='is from the future: the newest IMU sample is at '
@@ -173,7 +174,7 @@ def test_an_invalid_fix_says_why():
 
 
 def test_a_gnss_jump_of_a_kilometre_is_gated_and_changes_nothing():
-    """The innovation is beyond the gate during the jump; later fixes are used."""
+    """A GNSS jump of 1 km is beyond the gate and changes nothing; later fixes are used."""
     fixes = gnss_fixes((0.1, 0.1, 0.0))
     jumped = [replace(f, lat=f.lat + 1000.0 / 6.4e6) if 5 <= k <= 8 else f
               for k, f in enumerate(fixes)]
@@ -204,7 +205,7 @@ number = st.floats(-300.0, 300.0)
 @given(st.lists(st.tuples(st.sampled_from(FIXES), number, number,
                           st.floats(1e-6, 1e4), st.integers(0, 3 * 10**9)), max_size=12))
 def test_the_covariance_stays_positive_and_the_solution_finite(changes):
-    """With any velocities, sigmas and delays of fixes, P stays positive without a gate."""
+    """For any velocity, sigma and delay, without a gate, P stays positive and all is finite."""
     nav = navigator(gate_probability=0.0)
     for (source, fix), x, y, sigma, delay in changes:
         if source == METER:

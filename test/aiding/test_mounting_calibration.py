@@ -1,4 +1,4 @@
-"""Azimuth and mounting error with GNSS: by the filter, by equation (27), by least squares."""
+"""Azimuth and mounting error with GNSS: filter, equation (27) of Ivanov (2015), least squares."""
 
 from dataclasses import replace
 import math
@@ -43,7 +43,7 @@ def fixes_of(settings, blocks):
 
 
 def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
-    """A mid-grade free INS, two turns: 20 arcmin are found to within 2 by (27), and k_z too."""
+    """Two turns of a mid-grade free INS: equation (27) gives 20 arcmin within 2, and k_z."""
     settings, blocks = flight
     model = settings.aided_navigator
     free = navigate_aided(replace(model, filter='free',
@@ -61,7 +61,7 @@ def test_the_two_manoeuvres_give_azimuth_and_mounting(flight):
     assert abs(found.dpsi - true) < 4.0 * found.dpsi_sigma + 0.3 * ARCMIN
     assert mu / ARCMIN == pytest.approx(MOUNTING, abs=2.0)
     assert found.k_z == pytest.approx(K_Z, abs=4.0 * found.k_z_sigma)
-    # Equation (27) by itself assumes k_z = 0.
+    # Equation (27) assumes k_z = 0.
     plain = settings.velocity_meter
     plain = replace(plain, surrogate=replace(plain.surrogate, k_z=0.0))
     _, meter = fixes_of(replace(settings, velocity_meter=plain), blocks)
@@ -93,14 +93,14 @@ def test_exact_data_give_exact_estimates():
     course = np.radians(30.0 + 60.0 / (1.0 + np.exp(-(t - 150.0) / 10.0)))
     v = 200.0 * np.stack([np.sin(course), np.cos(course)], axis=1)
     dpsi = 1.5e-3
-    # Computed heading too far clockwise: the integrated velocity is rotated clockwise.
+    # The computed heading is too far clockwise, so the integrated velocity is rotated clockwise.
     turned = dpsi * np.stack([v[:, 1], -v[:, 0]], axis=1)
     off = 0.05 + 1e-3 * t[:, np.newaxis] * (1.0, -1.0)
     found, _ = azimuth_error(t, v + turned - turned[0] + off, v)
     assert found == pytest.approx(dpsi, abs=1e-12)
     computed = np.stack([np.full(40, 200.0), np.linspace(-8.0, 8.0, 40)], axis=1)
     read = turned_and_scaled(computed, 6e-3, 0.03)
-    # The lateral velocities cancel in the sum, the scale error of the remainder does not.
+    # In the sum the lateral velocities cancel; the effect of the scale error remains.
     assert mounting_sum(read, computed) == pytest.approx(1.03 * 6e-3, abs=1e-12)
     total, _, k_z, _ = least_squares(read, computed)
     assert (total, k_z) == pytest.approx((6e-3, 0.03), abs=1e-12)
@@ -115,7 +115,7 @@ def test_wind_on_one_side_spoils_the_sum_and_not_the_least_squares():
 
 
 def test_what_cannot_show_an_azimuth_is_refused():
-    """A straight flight and too few fixes are rejected, with one sentence each."""
+    """A straight flight, or too few fixes, are rejected with one message each."""
     t = np.arange(60.0)
     v = np.tile((100.0, 170.0), (60, 1))
     with pytest.raises(ValueError, match='expected a turn, because the azimuth error is '

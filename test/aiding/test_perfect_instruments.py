@@ -8,7 +8,7 @@ ZEROS = ('surrogate.sigma_x_m_s:=0.0', 'surrogate.sigma_z_m_s:=0.0', 'surrogate.
 
 
 def test_fixes_without_errors_are_taken():
-    """Fixes with zero errors are neither dropped nor rejected."""
+    """Fixes of error-free instruments are neither dropped nor rejected."""
     settings = aided_runs.settings(*ZEROS)
     _, _, found = aided_runs.flown(settings)
     assert not found.faults

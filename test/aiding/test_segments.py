@@ -1,4 +1,4 @@
-"""Many samples at once or one at a time, compiled or plain, give the same bits."""
+"""Samples in blocks or one by one, with compiled or plain functions, give the same bits."""
 
 from dataclasses import replace
 
@@ -34,7 +34,7 @@ def settings_of(name, **values):
 
 
 def one_by_one(settings):
-    """Return the states, sigmas and JudgedFixes from single samples, as live."""
+    """Return states, sigmas and JudgedFixes of samples passed one by one, as in a live run."""
     navigator = AidedNavigator(settings)
     waiting = [(f.arrival_ns, 'velocity_meter', f) for f in FIXES]
     waiting.sort(key=lambda entry: entry[:2])
@@ -50,7 +50,7 @@ def one_by_one(settings):
 
 
 def in_blocks(settings, cuts):
-    """Return the states, sigmas and JudgedFixes from blocks of samples."""
+    """Return the states, sigmas and JudgedFixes when samples are passed in blocks."""
     edges = [0, *sorted(cuts), len(IMU)]
     blocks = [(IMU[a:b], TRUTH[a:b]) for a, b in zip(edges[:-1], edges[1:]) if a < b]
     run = navigate_aided(settings, blocks, Reported(FIXES))
@@ -64,7 +64,7 @@ def in_blocks(settings, cuts):
 @pytest.mark.parametrize('variant', VARIANTS)
 @pytest.mark.parametrize('tier', ('plain', 'compiled'))
 def test_blocks_have_the_bits_of_single_samples(name, variant, tier, monkeypatch):
-    """Random cuts and late fixes: the same solutions, standard deviations and used fixes."""
+    """Random blocks and late fixes give solutions, sigmas and used fixes with the same bits."""
     if tier == 'compiled':
         if compilation.compiled(segment.fly) is None:
             pytest.skip('Numba is not installed')
@@ -115,12 +115,12 @@ def test_a_filter_that_follows_every_sample_is_stepped(monkeypatch):
 
 @pytest.mark.parametrize('bad', (123, 456))
 def test_a_reading_that_is_no_number_is_named_and_the_solution_starts_anew(bad):
-    """The sentence names the sample at any place in a block; with on_fault reset it continues."""
+    """A reading that is not finite is named anywhere in a block; on_fault reset continues."""
     f = IMU.f.copy()
     f[bad, 1] = np.nan
     imu = ImuSamples(IMU.t_ns, IMU.omega, f)
     run = navigate_aided(settings_of('eskf'), [(imu, TRUTH)], Reported(FIXES))
     assert run.faults[0].startswith(
         f'the solution at {bad / 100:.9f} s is not finite; expected finite readings')
-    # The sample itself begins the new solution: its reading is not integrated.
+    # The solution starts anew at the bad sample, whose reading is not integrated.
     assert len(run.states) == len(IMU) and np.isfinite(run.states.v_n).all()

@@ -104,7 +104,7 @@ def test_on_streams_it_is_the_offline_run_in_any_order():
 
 @pytest.mark.parametrize('name', [n for n, entry in FILTERS.items() if not entry.takes_sliding])
 def test_filters_that_follow_a_window_refuse_those_that_overlap(name):
-    """A filter that needs whole windows rejects sliding ones, and names the parameter."""
+    """A filter that needs whole windows rejects sliding ones and names the parameter."""
     with pytest.raises(ValueError, match=f'window.slide_cycles is 10 with filter {name}, which '
                                          'needs windows that do not overlap; expected 0, or '
                                          'filter free or conventional'):
@@ -113,7 +113,7 @@ def test_filters_that_follow_a_window_refuse_those_that_overlap(name):
 
 
 def test_an_unstable_gain_is_refused():
-    """gain_per_s must be less than two over the time between fixes; filter free ignores it."""
+    """gain_per_s must be less than 2 divided by the time between fixes; filter free ignores it."""
     with pytest.raises(ValueError, match='gain_per_s is 20 1/s, and window.slide_cycles is 10; '
                                          'expected less than 20 1/s'):
         navigator(gain_per_s=20.0)
@@ -121,7 +121,7 @@ def test_an_unstable_gain_is_refused():
 
 
 def test_fixes_that_end_between_slides_are_refused():
-    """Fixes of a meter that slides by another step are rejected."""
+    """Fixes of a meter that slides by a different step are rejected."""
     nav = navigator()
     with pytest.raises(StreamFault, match='ends inside a window; expected a multiple of 0.1 s of '
                                           'motion time .window.slide_cycles must be the same'):

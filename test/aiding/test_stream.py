@@ -12,10 +12,10 @@ SECOND = 1_000_000_000
 
 def test_the_stream_is_the_offline_run():
     """
-    A live run equals the offline run to the rounding of the truth, which passes through the map.
+    A live run equals the offline run within the rounding of the truth.
 
-    As in test_live_graph: a position has 1e-9 m in its last digit, a few of which add up; an
-    attitude is rounded at 1e-15.
+    The truth passes through the map frame: as in test_live_graph a position has 1e-9 m in its last
+    digit, a few of which add up; an attitude is rounded at 1e-15.
     """
     _, offline, streams = scene()
     outputs, faults, stream = run_stream(streams, np.random.default_rng(0))
@@ -36,7 +36,7 @@ def test_the_stream_is_the_offline_run():
 @settings(max_examples=6, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_any_order_gives_the_same_bits(seed):
-    """IMU, truth and fixes may overtake each other arbitrarily: the bits are the same."""
+    """IMU, truth and fixes may overtake each other arbitrarily: the solution has the same bits."""
     _, _, streams = scene()
     first, _, _ = run_stream(streams, np.random.default_rng(0))
     again, faults, _ = run_stream(streams, np.random.default_rng(seed))
@@ -46,7 +46,11 @@ def test_any_order_gives_the_same_bits(seed):
 @settings(max_examples=4, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_after_a_gap_of_the_imu_alone_any_order_gives_the_same_bits(seed):
-    """Samples waiting at the gap are processed first; earlier fixes remain known after it."""
+    """
+    After an IMU gap any order of arrival gives the same bits.
+
+    Samples that wait at the gap are processed first, and earlier fixes remain known after it.
+    """
     _, _, streams = scene()
     streams = {**streams, 'push_imu': [e for e in streams['push_imu']
                                        if not 5.2 < e[0] / SECOND < 5.6]}
@@ -59,7 +63,7 @@ def test_after_a_gap_of_the_imu_alone_any_order_gives_the_same_bits(seed):
 
 
 def test_a_jump_back_begins_anew_whoever_jumps_first():
-    """The second run equals the first, whether fixes of the new run come before or after."""
+    """After a jump back the second run equals the first, whichever stream jumps back first."""
     _, _, streams = scene()
     expected, _, _ = run_stream(streams, np.random.default_rng(0))
     for names in ((METER, GNSS, 'push_truth', 'push_imu'),
@@ -69,7 +73,7 @@ def test_a_jump_back_begins_anew_whoever_jumps_first():
             push(stream, name, event, faults)
         assert not faults
         outputs = []
-        # The first events of the streams in this order, the others at random.
+        # The first events come in this order of streams, the others at random.
         for name in names:
             outputs += push(stream, name, streams[name][0], faults)
         rest = {name: events[1:] for name, events in streams.items()}
@@ -81,7 +85,7 @@ def test_a_jump_back_begins_anew_whoever_jumps_first():
 
 
 def test_fixes_of_the_run_before_are_passed_over():
-    """Fixes of the old run that arrive after the jump back of the samples are ignored."""
+    """Fixes of the old run that arrive after the stamps of the samples jumped back are ignored."""
     _, _, streams = scene()
     expected, _, _ = run_stream(streams, np.random.default_rng(0))
     late = {METER: 1, GNSS: 2}

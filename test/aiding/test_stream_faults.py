@@ -1,4 +1,4 @@
-"""Fixes that are late, bad, missing or from the future: messages, and how the run continues."""
+"""Fixes that are late, invalid, missing or from the future: messages, and later solutions."""
 
 from dataclasses import replace
 import math
@@ -48,7 +48,7 @@ def test_a_silent_source_is_named_and_its_late_fixes_change_the_past():
 
 
 def test_whatever_waits_is_bounded():
-    """With a source that never delivers, waiting readings are limited and no truth is lost."""
+    """With a source that never delivers, at most 50 readings wait, and the solution has no gap."""
     _, _, streams = scene()
     stream = AidedStream(scene()[0].aided_navigator, 50)
     outputs, faults = [], []
@@ -63,7 +63,7 @@ def test_whatever_waits_is_bounded():
 
 
 def test_a_bad_fix_is_dropped_and_holds_nothing_up():
-    """A fix with another window is rejected with one sentence; the samples do not wait for it."""
+    """A fix with another window is rejected with one message, and no sample waits for it."""
     from dataclasses import replace
     chosen, _, streams = scene()
     stream, faults = AidedStream(chosen.aided_navigator), []
@@ -88,7 +88,7 @@ def test_what_is_due(first_ns, t_ns, missing):
 
 
 def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
-    """A receiver with another epoch: one sentence, and its later valid fixes are used."""
+    """A fix 997 s ahead is rejected with one message; the valid fixes of the receiver are used."""
     _, _, streams = scene()
     stream, outputs, faults = AidedStream(scene()[0].aided_navigator), [], []
     for name, event in mixed(streams, np.random.default_rng(5)):
@@ -104,7 +104,7 @@ def test_a_fix_from_the_future_is_refused_and_those_of_now_are_not_missed():
 
 
 def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
-    """In /diagnostics a GNSS jump is a warning with its instant, an outage only a count."""
+    """A gated GNSS fix is reported once in /diagnostics; an outage is only counted."""
     stream = AidedStream(chosen_settings(VALUES).aided_navigator)
     health = AidingHealth(stream)
     gated = FixOutcome((1000.0, 0.0), 250.0, 2, False, 'its innovation is beyond the gate')
@@ -119,7 +119,7 @@ def test_a_fix_beyond_the_gate_is_told_once_and_an_outage_is_not():
 
 
 def test_a_missing_instrument_stays_wrong_until_it_delivers():
-    """A missing instrument is reported while the first sample waits and until it delivers."""
+    """A missing sensor is reported while samples wait for it, and then until it delivers."""
     _, _, streams = scene()
     stream = AidedStream(scene()[0].aided_navigator)
     health = AidingHealth(stream)
@@ -138,7 +138,7 @@ def test_a_missing_instrument_stays_wrong_until_it_delivers():
 
 
 def test_other_windows_hold_nothing_up():
-    """Fixes of a meter with another window.cycles are rejected, and no sample waits for others."""
+    """Fixes with another window.cycles are rejected, and no sample waits for further ones."""
     _, _, streams = scene()
     stream, faults = AidedStream(scene()[0].aided_navigator), []
     wrong = [replace(fix, cycles=100, start_ns=fix.end_ns - SECOND) for _, fix in streams[METER]]
@@ -156,6 +156,6 @@ def test_other_windows_hold_nothing_up():
     ({'gnss.latency_ms': 20000.0}, 'gnss.latency_ms is 20000 ms; expected at most buffer_s, 10 s'),
     ({'window.latency_ms': 10001.0}, 'window.latency_ms is 10001 ms; expected at most buffer_s')])
 def test_settings_that_cannot_aid_are_refused(values, sentence):
-    """Invalid combinations are rejected with one sentence each, at construction."""
+    """The navigator refuses invalid combinations of settings with one message each."""
     with pytest.raises(ValueError, match=sentence):
         AidedNavigator(build(AIDING['aided_navigator'], values))

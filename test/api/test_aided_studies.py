@@ -1,4 +1,4 @@
-"""Ensembles of the aided chain and the comparison of filters from Python."""
+"""Ensembles of the aided simulation and the comparison of filters from Python."""
 
 import ins_sim
 import numpy as np
@@ -20,7 +20,7 @@ def ensemble(settings):
 
 
 def test_a_run_of_the_ensemble_flies_alone(settings, ensemble):
-    """A run of the ensemble, simulated alone by its number, is equal to the bit."""
+    """A run of the ensemble equals to the bit the single simulation with its run number."""
     alone = ins_sim.simulate_aided(settings.with_run(3), twin=False)
     np.testing.assert_array_equal(ensemble.final_errors['position'][1], alone.errors.position[-1])
     assert ensemble.runs == range(2, 5) and ensemble.diverged == ()
@@ -50,7 +50,7 @@ def test_nees_and_nis_are_variables(ensemble):
 
 
 def test_the_comparison(settings, tmp_path):
-    """The comparison has a row per filter, arrays by filter, flight, time, and a folder."""
+    """A comparison has a row per filter, arrays by filter, flight and time, and can be saved."""
     with pytest.raises(ValueError, match='gnss_model.use'):
         ins_sim.read_settings(['route_flight'], {**VALUES, 'filter': 'free'}, aided=True)
     study = ins_sim.compare_filters(settings, runs=2, filters=['free', 'eskf'], jobs=1)
@@ -76,6 +76,6 @@ def test_the_comparison(settings, tmp_path):
     (lambda s: ins_sim.compare_filters(s, filters='eskf'), "filters is 'eskf'; expected a list"),
     (lambda s: ins_sim.compare_filters(s, runs=0), 'runs is 0; expected a whole number from 1')])
 def test_refusals(settings, call, sentence):
-    """Bad arguments are refused in one sentence."""
+    """Invalid arguments are refused with one message each."""
     with pytest.raises(ValueError, match=sentence):
         call(settings)

@@ -78,7 +78,7 @@ def test_types():
 
 
 def test_values_are_taken_bit_by_bit():
-    """Floats, NumPy numbers and arrays are passed exactly, not through text."""
+    """Floats, NumPy numbers and arrays are passed with all their bits, not through text."""
     third = 1.0 / 3.0
     settings = ins_sim.read_settings(LATE_MOTION_2, {
         'gyro.delay_us.y': third, 'gyro.delay_us.x': np.float64(third),
@@ -91,7 +91,7 @@ def test_values_are_taken_bit_by_bit():
 
 
 def test_a_saved_run_is_that_of_the_command_line(run, tmp_path):
-    """A saved run equals that of the command; an existing folder is kept without overwrite."""
+    """A saved run equals that of the command; without overwrite an existing folder is kept."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'verb')]) == 0
     run.save(tmp_path / 'api')
@@ -116,7 +116,7 @@ def test_a_saved_aided_run_is_that_of_the_command_line(aided, tmp_path):
 
 
 def same_folders(one, other):
-    """Compare two folders of runs, pictures apart."""
+    """Assert that two folders of runs are equal, except for their pictures."""
     assert {p.name for p in one.iterdir()} == {p.name for p in other.iterdir()}
     for name in ('parameters.yaml', 'manifest.yaml', 'summary.json'):
         assert (one / name).read_text() == (other / name).read_text()
@@ -137,7 +137,7 @@ def test_every_field_of_a_history_has_its_columns():
 
 
 def test_tables(run, aided):
-    """The index is time in ns, the columns are named by field, component and unit."""
+    """The index of a table is time in ns; columns are named by field, component and unit."""
     pytest.importorskip('pandas', reason='pandas is not installed')
     table = run.to_dataframe()
     assert table.index.name == 't_ns' and table.index.dtype == np.int64
@@ -154,7 +154,7 @@ def test_tables(run, aided):
 
 
 def test_tables_without_pandas(run, monkeypatch):
-    """Without pandas, to_dataframe says what to install."""
+    """Without pandas, to_dataframe names the package to install."""
     monkeypatch.setitem(sys.modules, 'pandas', None)
     with pytest.raises(ImportError, match=r"pip install 'ins_sim\[dataframe\]'"):
         run.to_dataframe()
@@ -185,7 +185,7 @@ def test_arrays_into_navigate(tmp_path):
 
 
 def test_a_motion_of_settings_and_of_a_bag(tmp_path):
-    """The truth of a bag is that of the motion it was written from."""
+    """The truth of a bag is that of the motion from which it was written."""
     settings = ins_sim.read_settings(LATE_MOTION_2, {'duration_s': 12.0})
     assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=12.0', '-o',
                  str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag')]) == 0

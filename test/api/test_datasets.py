@@ -28,7 +28,7 @@ def aided():
 
 
 def check(found, history):
-    """Compare a Dataset with a History."""
+    """Assert that a Dataset holds the arrays of a History."""
     fields = history.arrays()
     np.testing.assert_array_equal(found['time'], fields.pop('t_ns'))
     assert found['time'].dtype == np.int64 and found['time'].attrs == {'units': 'ns'}
@@ -44,7 +44,7 @@ def check(found, history):
 
 
 def test_records_of_runs(run, aided):
-    """Every record of a run and of an aided run; records of one run can be merged."""
+    """Every record of a run becomes a Dataset, and the Datasets of a run can be merged."""
     xarray = pytest.importorskip('xarray', reason='xarray is not installed')
     for record in ('errors', 'states', 'truth', 'imu', 'twin'):
         found = run.to_xarray(record)
@@ -79,7 +79,7 @@ def test_records_of_a_navigation(tmp_path):
 
 
 def test_a_dataset_of_many_runs():
-    """Dimensions have the given names; one without a unit has no attribute units."""
+    """Dimensions have the given names; a quantity without unit has no attribute units."""
     pytest.importorskip('xarray', reason='xarray is not installed')
     values = np.arange(24.0).reshape(2, 4, 3)
     found = dataset({'run': ((3, 7), ''), 'time': (np.arange(4), 'ns'), 'axis': (ENU, '')},
@@ -91,7 +91,7 @@ def test_a_dataset_of_many_runs():
 
 
 def test_without_xarray(run, monkeypatch):
-    """Without xarray, to_xarray says what to install."""
+    """Without xarray, to_xarray names the package to install."""
     monkeypatch.setitem(sys.modules, 'xarray', None)
     with pytest.raises(ImportError, match=r"expected pip install 'ins_sim\[xarray\]'"):
         run.to_xarray()

@@ -1,4 +1,4 @@
-"""The public functions refuse what the command line refuses, in the same words."""
+"""The public functions refuse what the command line refuses, with the same messages."""
 
 import ins_sim
 from ins_sim.cli.main import main
@@ -16,7 +16,7 @@ AIDED = {'duration_s': 3.0, 'window.cycles': 100}
     ('motion.kind', 'rockin'), ('strapdown:output_every', 1.5), ('gyro.delay_us.y', 'late'),
     ('gyro.errors.bias_deg_h', [1.0, 2.0]), ('rate_hz', True)])
 def test_values_are_refused_in_the_words_of_the_command_line(word, value, tmp_path, capsys):
-    """A bad value gives the message of -p on the command line."""
+    """An invalid value gives the message of option -p of the command line."""
     with pytest.raises(ValueError) as refused:
         ins_sim.read_settings('motion_2', {word: value})
     text = {True: 'true', 'nan': '.nan'}.get(value if value is True else str(value), str(value))
@@ -30,7 +30,7 @@ def test_values_are_refused_in_the_words_of_the_command_line(word, value, tmp_pa
 @pytest.mark.parametrize('values, said', [
     (['duration_s:=1'], 'values are'), ({1: 2.0}, 'values are')])
 def test_values_that_are_no_mapping(values, said):
-    """Values that are not a mapping are refused with the expectation."""
+    """Values that are not a mapping are refused; the message states what is expected."""
     with pytest.raises(ValueError, match=said):
         ins_sim.read_settings('motion_2', values)
 
@@ -43,7 +43,7 @@ def test_an_unknown_file_names_those_there_are():
 
 @pytest.mark.parametrize('names', [None, 3, b'motion_2', {'duration_s': 1.0}, [None]])
 def test_names_that_are_no_paths(names):
-    """Names that are not paths are refused with the expectation."""
+    """Parameter files given as something other than a path are refused with the expectation."""
     with pytest.raises(ValueError, match='^names is .*expected'):
         ins_sim.read_settings(names)
 
@@ -68,7 +68,7 @@ def test_what_does_not_exist_is_not_found(function, name):
 
 
 def test_settings_of_the_wrong_function_are_refused():
-    """simulate and predict refuse aided settings, simulate_aided the others."""
+    """simulate and predict refuse aided settings, simulate_aided those of other functions."""
     aided = ins_sim.read_settings(['route_flight', 'grade_mid'], AIDED, aided=True)
     for function in (ins_sim.simulate, ins_sim.predict):
         with pytest.raises(ValueError, match=r'expected SimulationSettings of read_settings'):
@@ -93,7 +93,7 @@ BAD = [
 
 @pytest.mark.parametrize('changed, said', BAD)
 def test_bad_arrays_are_refused_in_one_sentence(changed, said):
-    """Bad arrays give a ValueError of ours, not an error of NumPy."""
+    """Invalid arrays give a ValueError with our message, not an error of NumPy."""
     with pytest.raises(ValueError, match=said) as refused:
         record_at_rest(100, **changed)
     assert '\n' not in str(refused.value)
@@ -118,7 +118,7 @@ def test_an_empty_record_is_refused():
 
 
 def test_a_standstill_that_fills_the_record_names_the_alignment():
-    """If the alignment uses the whole record, the message names the alignment settings."""
+    """If the alignment uses the whole record, the message names the settings of the alignment."""
     place = {'initial.position': 'given', 'initial.latitude_deg': 45.0,
              'initial.heading': 'given'}
     with pytest.raises(ValueError, match=r'expected .*alignment \(alignment.longest_s is 60 s\)'):
@@ -128,7 +128,7 @@ def test_a_standstill_that_fills_the_record_names_the_alignment():
 
 
 def test_an_own_motion_is_checked():
-    """A motion that returns invalid arrays is refused before the run."""
+    """A user's motion that returns invalid arrays is refused before the run."""
     settings = ins_sim.read_settings('motion_2', SHORT)
 
     class Broken(ins_sim.Motion):
@@ -138,7 +138,7 @@ def test_an_own_motion_is_checked():
             self._field, self._value = field, value
 
         def at(self, t_ns):
-            """Return the truth of motion 2, but for one array."""
+            """Return the truth of motion 2 with one array replaced."""
             arrays = ins_sim.open_motion(settings).at(t_ns).arrays()
             return histories.Truth(**{**arrays, self._field: self._value})
 

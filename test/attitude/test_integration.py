@@ -1,4 +1,4 @@
-"""The three orientation algorithms against a closed form and against each other."""
+"""The three orientation algorithms compared with a closed form and with each other."""
 
 import math
 
@@ -26,7 +26,7 @@ def truth(t):
 
 
 def run(kind, duration, dt):
-    """Return the greatest error of the DCM against the closed form, and its history."""
+    """Return the greatest error of the DCM relative to the closed form, and its history."""
     algorithm, worst, history = Orientation(kind), 0.0, []
     for k in range(round(duration / dt)):
         mid = rate((k + 0.5) * dt)
@@ -74,7 +74,7 @@ def test_quaternion_is_exact_for_a_constant_rate():
 
 @pytest.mark.parametrize('kind', KINDS)
 def test_readings_alone_and_a_kept_state(kind):
-    """Mean rates of the intervals suffice; a restored state gives the same bits."""
+    """Mean rates of the intervals suffice as input; a restored state gives the same bits."""
     algorithm, start = Orientation(kind, truth(5.0)), np.array(truth(5.0))
     assert min(abs(np.array(algorithm.q) - start).max(),
                abs(np.array(algorithm.q) + start).max()) < 1e-14
@@ -89,7 +89,11 @@ def test_readings_alone_and_a_kept_state(kind):
 
 
 def test_bortz_series_meets_the_closed_form():
-    """They meet at d^2 = 0.01 to the rounding of the closed form, 1e-16 / d^2; large near 2 pi."""
+    """
+    The series of Bortz's equation meets the closed form at d^2 = 0.01 to rounding, 1e-16 / d^2.
+
+    Near 2 pi the closed form is large.
+    """
     half = 0.5 * math.sqrt(0.01)
     assert bortz_factor(0.01 - 1e-12) == pytest.approx((1 - half / math.tan(half)) / 0.01,
                                                        abs=3e-14)
@@ -99,7 +103,7 @@ def test_bortz_series_meets_the_closed_form():
 
 
 def test_shorter_is_the_same_rotation():
-    """``shorter`` returns the same rotation with at most pi of length."""
+    """``shorter`` returns the same rotation as a vector of length at most pi."""
     for d in (1.0, 3.2, 5.0, 6.2):
         theta = (0.6 * d, 0.0, 0.8 * d)
         short = shorter(theta)
@@ -109,7 +113,7 @@ def test_shorter_is_the_same_rotation():
 
 
 def test_quaternion_of_a_dcm():
-    """All four branches give the quaternion; roll is right wing down about the forward axis."""
+    """All four branches give the quaternion of a DCM; roll is right wing down."""
     for seed in range(50):
         q = np.random.default_rng(seed).normal(size=4) ** 3
         q /= np.linalg.norm(q)
@@ -119,6 +123,6 @@ def test_quaternion_of_a_dcm():
 
 
 def test_unknown_algorithm():
-    """The error for an unknown algorithm names it and lists the known ones."""
+    """The message for an unknown algorithm names it and lists the known ones."""
     with pytest.raises(ValueError, match="orientation is 'euler'; expected poisson, euler_vector"):
         Orientation('euler')

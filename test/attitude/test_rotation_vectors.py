@@ -1,4 +1,4 @@
-"""Exponential and logarithm of arrays are those of floats, to the bit."""
+"""Exponential and logarithm of arrays equal those of floats, to the bit."""
 
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.attitude.rotation_vectors import exponentials
@@ -16,14 +16,14 @@ def vectors():
 
 
 def test_exponentials():
-    """Short vectors (by series) and long ones (by sine and cosine) have the bits of floats."""
+    """Exponentials of short vectors (series) and long ones have the bits of floats."""
     for phi in (vectors(), vectors()[:, :4]):
         assert np.array_equal(np.array(exponentials(phi)).T,
                               [quaternion.exponential(row) for row in phi.T.tolist()])
 
 
 def test_logarithms():
-    """Both signs of a quaternion, and one with another norm, have the bits of floats."""
+    """The logarithm has the bits of floats for both signs of a quaternion and for another norm."""
     q = np.array(exponentials(vectors())) * RNG.choice([-1.0, 1.0, 0.7], 4000)
     assert np.array_equal(np.array(quaternion.logarithm(q)).T,
                           [quaternion.logarithm(row) for row in q.T.tolist()])

@@ -18,7 +18,7 @@ DATA = np.random.default_rng(1).integers(0, 9, 300_000, dtype=np.uint8).tobytes(
 
 @pytest.fixture
 def only(monkeypatch):
-    """Return a function that makes only one module (or none) available to a compression."""
+    """Return a function that makes only the given modules available for a compression."""
     def leave(name, *modules):
         for module in modules:
             pytest.importorskip(module)
@@ -51,9 +51,7 @@ def test_each_library_reads_what_any_wrote(name, module, only):
 
 @pytest.mark.parametrize('name, module', LIBRARIES)
 def test_bad_data_are_refused(name, module, only):
-    """
-    Truncated data, other data, and data of another size than stated are refused with one message.
-    """
+    """Truncated data, other data, and data of an unstated size are refused with one message."""
     only(name, module)
     packed = bytes(compression.compress(DATA, name))
     for stop in (0, 3, 20, len(packed) // 2):
@@ -68,7 +66,7 @@ def test_bad_data_are_refused(name, module, only):
 
 @pytest.mark.parametrize('name, module', LIBRARIES)
 def test_memory_is_bounded_by_what_the_chunk_says(name, module, only):
-    """A chunk that unpacks to 200 MB but states 1 MB takes less than 20 MB."""
+    """A chunk that unpacks to 200 MB but states 1 MB needs less than 20 MB of memory."""
     only(name, module)
     packed = compression.compress(bytes(200_000_000), name)
     tracemalloc.start()
@@ -91,7 +89,7 @@ def write(path, name):
 
 @pytest.mark.parametrize('name, package', [('lz4', 'python3-lz4'), ('zstd', 'python3-zstandard')])
 def test_a_missing_library_is_one_sentence(name, package, only, tmp_path, capsys):
-    """The message names what to install; bags without compression need no library."""
+    """The message for a missing library names what to install; plain bags need none."""
     write(tmp_path / 'packed', name)
     only('lz4')
     only('zstd')
@@ -112,7 +110,7 @@ def test_a_missing_library_is_one_sentence(name, package, only, tmp_path, capsys
 
 
 def test_a_cut_bag_loses_no_chunk_to_a_missing_library(only, tmp_path):
-    """A missing library is not mistaken for a damaged last chunk."""
+    """In a truncated bag a missing library is not mistaken for a damaged last chunk."""
     path = write(tmp_path / 'bag', 'zstd') / 'bag_0.mcap'
     path.write_bytes(path.read_bytes()[:-50])
     with open_bag(path) as bag:
@@ -124,7 +122,7 @@ def test_a_cut_bag_loses_no_chunk_to_a_missing_library(only, tmp_path):
 
 @pytest.mark.parametrize('name', ['lz4', 'zstd'])
 def test_a_chunk_that_gains_more_than_messages_do_is_refused_before_it_is_unpacked(name):
-    """64 MB are unpacked for any ratio; a gigabyte of zeros is not."""
+    """A chunk may unpack to 64 MB at any ratio; a gigabyte of zeros is refused before."""
     data = compression.compress(bytes(1 << 20), name)
     assert compression.decompress(data, name, 1 << 20) == bytes(1 << 20)
     with pytest.raises(ValueError, match='it claims 1073741824 bytes; expected at most '

@@ -1,4 +1,8 @@
-"""A writer that is killed, or whose disk is full, leaves the data it wrote in a marked bag."""
+"""
+If a writer is killed, or its disk is full, the data written so far can be read.
+
+Such a bag is marked as truncated.
+"""
 
 import os
 import signal
@@ -32,14 +36,14 @@ while True:
     if k % 250 == 0:
         print(k, flush=True)
 """
-# A recorder that never flushes may lose this part of the log time: one second.
+# A recorder that never flushes may lose the last second of log time, ns.
 UNFLUSHED = 101
 
 
 @pytest.mark.parametrize('flush', ['flush', 'none'])
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_killed_in_the_middle(storage, compression, flush, tmp_path, capsys):
-    """All flushed data can be read, info reports a truncated bag, exit code 0."""
+    """After SIGKILL all flushed data can be read; info reports a truncated bag, exit code 0."""
     path = tmp_path / 'bag'
     process = subprocess.Popen([sys.executable, '-c', RECORDER, path, storage, compression, flush],
                                stdout=subprocess.PIPE, text=True)
@@ -91,7 +95,7 @@ except OSError as error:
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_no_room_is_left(storage, compression, tmp_path):
-    """The error states how many messages are kept; exactly these are read from a truncated bag."""
+    """On a full disk the error states how many messages are kept; exactly these can be read."""
     path = tmp_path / 'bag'
     result = subprocess.run([sys.executable, '-c', FULL, path, storage, compression],
                             capture_output=True, text=True)
@@ -106,13 +110,13 @@ def test_no_room_is_left(storage, compression, tmp_path):
 
 
 def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
-    """Exit code 2, one message, and a bag that is not closed but can be read."""
+    """A full disk ends simulate with exit code 2 and one message; the unclosed bag can be read."""
     writev, left = os.writev, [5_000_000]
 
     def full(descriptor, parts):
         left[0] -= sum(part.nbytes for part in parts)
         if left[0] < 0:
-            # The kernel writes what fits, and then nothing more.
+            # Like the kernel: write what fits, then nothing more.
             os.write(descriptor, bytes(parts[0])[:20])
             raise OSError(28, 'No space left on device')
         return writev(descriptor, parts)
@@ -130,7 +134,7 @@ def test_a_full_disk_in_simulate(tmp_path, capsys, monkeypatch):
 
 
 def test_closing_on_a_full_disk_keeps_the_messages(tmp_path, monkeypatch):
-    """If not even the summary fits, the file is truncated, not broken."""
+    """Without room for the summary the file is truncated, and its messages can be read."""
     bag = BagWriter(tmp_path / 'bag')
     bag.add_topic('imu', topics.IMU)
     bag.write('imu', 5, topics.IMU_RAW.writer().pack(5, (0.0,) * 3, (0.0,) * 3))
@@ -162,7 +166,7 @@ def test_a_bag_in_writing_can_be_read(tmp_path):
 
 
 def test_an_error_in_the_middle_leaves_a_cut_bag(tmp_path):
-    """A bag that a recorder cannot finish is kept; a discarded one is deleted."""
+    """An unfinished bag of a recorder is kept as a truncated one; a discarded bag is deleted."""
     with pytest.raises(RuntimeError), BagWriter(tmp_path / 'bag') as bag:
         bag.add_topic('imu', topics.IMU)
         bag.write('imu', 1, topics.IMU_RAW.writer().pack(1, (0.0,) * 3, (0.0,) * 3))

@@ -1,4 +1,4 @@
-"""Truncated or corrupt bags: complete parts are read, the rest gives one message."""
+"""Of truncated or corrupt bags the complete parts are read; the rest gives one message."""
 
 import sqlite3
 
@@ -15,7 +15,7 @@ STAMPS = np.arange(N) * 10**7
 
 @pytest.mark.parametrize('compression', ['none', 'lz4', 'zstd'])
 def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
-    """For any cut: complete chunks, in order, and a note."""
+    """Wherever a file is cut, its complete chunks are read in order, with a note."""
     file = write(tmp_path / 'bag', 'mcap', compression) / 'bag_0.mcap'
     data, last = file.read_bytes(), -1
     for size in [*range(0, len(data), max(1, len(data) // 97)), len(data) - 1]:
@@ -40,7 +40,11 @@ def test_a_cut_file_gives_its_whole_chunks(compression, tmp_path, capsys):
 
 
 def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
-    """After a crash of the machine the length may be right but not the data."""
+    """
+    A damaged last chunk of a truncated file is left out, as after a crash of the machine.
+
+    After a crash the length of a file may be right but not its data.
+    """
     path = write(tmp_path / 'bag') / 'bag_0.mcap'
     data, position, chunks = path.read_bytes(), len(form.MAGIC), []
     while data[position] != form.DATA_END:
@@ -57,7 +61,9 @@ def test_a_last_chunk_that_is_damaged_is_left_out_of_a_cut_file(tmp_path):
 
 def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
     """
-    Its files are found in the order of their numbers, and info reports that it was not closed.
+    Files of a bag without metadata.yaml are read in the order of their numbers.
+
+    The command info reports that the bag was not closed.
     """
     write(tmp_path / 'bag', split_bytes=500_000)
     (tmp_path / 'bag' / 'metadata.yaml').unlink()
@@ -69,7 +75,7 @@ def test_a_folder_without_metadata_is_cut(tmp_path, capsys):
 
 
 def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
-    """It is ambiguous and refused."""
+    """A folder with files of both storages is refused, because it is ambiguous."""
     for storage in ('mcap', 'sqlite3'):
         write(tmp_path / storage, storage)
     (tmp_path / 'sqlite3' / 'sqlite3_0.db3').rename(tmp_path / 'mcap' / 'x.db3')
@@ -78,7 +84,7 @@ def test_a_folder_with_both_storages_is_no_bag(tmp_path, capsys):
 
 
 def test_corrupt_chunks_are_found(tmp_path, capsys):
-    """A flipped bit in a chunk, an index, the summary or a length is detected."""
+    """A flipped bit in a chunk, an index, the summary or a length is reported."""
     path = write(tmp_path / 'bag') / 'bag_0.mcap'
     data = path.read_bytes()
 
@@ -112,7 +118,7 @@ def _first(data, opcode):
 
 
 def test_a_corrupt_database_is_found(tmp_path, capsys):
-    """A page of noise in the middle, and a truncated file."""
+    """A page of noise in the middle of an SQLite file, and a truncated file, are reported."""
     path = write(tmp_path / 'bag', 'sqlite3') / 'bag_0.db3'
     data = path.read_bytes()
     path.write_bytes(data[:len(data) // 2] + b'\xaa' * 65536 + data[len(data) // 2 + 65536:])
@@ -122,7 +128,11 @@ def test_a_corrupt_database_is_found(tmp_path, capsys):
 
 
 def test_values_of_the_wrong_kind_in_a_database(tmp_path, capsys):
-    """Strings for bytes, NULL for times, names that are numbers, messages without a topic."""
+    """
+    Values of the wrong kind in an SQLite file are reported.
+
+    Strings in place of bytes, NULL in place of times, numbers as names, messages without a topic.
+    """
     for k, (statement, sentence) in enumerate((
             ("UPDATE messages SET data = 'some text' WHERE id = 5", 'data of the wrong type'),
             ("UPDATE messages SET timestamp = 'late' WHERE id = 5", 'data of the wrong type'),
@@ -146,7 +156,7 @@ def _change(path, statement):
 
 
 def test_a_database_that_never_ends(tmp_path, capsys):
-    """A view that counts endlessly in place of the messages is refused."""
+    """A database with an endless view in place of the messages is refused."""
     path = next(write(tmp_path / 'bag', 'sqlite3').glob('*.db3'))
     database = sqlite3.connect(path)
     database.execute('DROP TABLE messages')

@@ -23,7 +23,7 @@ rosbag2 = pytest.importorskip('rosbags.rosbag2')
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_the_same_messages_are_the_same_bytes(storage, compression, tmp_path):
-    """Writing twice gives equal files; another storage or chunk size gives the same payload."""
+    """Writing twice gives equal files; other storages and chunk sizes give the same payload."""
     for folder in ('one', 'two'):
         write_everything(tmp_path / folder / 'bag', storage, compression)
         (tmp_path / folder / 'bag').touch()
@@ -38,9 +38,7 @@ def test_the_same_messages_are_the_same_bytes(storage, compression, tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_splits_by_size_and_by_time(storage, tmp_path):
-    """
-    Each file contains what its line in metadata.yaml states; together they contain everything.
-    """
+    """Each file of a split bag has what metadata.yaml states; together they have all messages."""
     expected = write_everything(tmp_path / 'size', storage, 'none', split_bytes=3 * CHUNK_BYTES)
     write_everything(tmp_path / 'time', storage, 'none', split_ns=20 * 10**9)
     for name in ('size', 'time'):
@@ -67,7 +65,11 @@ def test_splits_by_size_and_by_time(storage, tmp_path):
 
 
 def test_metadata_is_that_of_rosbag2(tmp_path):
-    """Keys in the order of rosbag2 Jazzy, version 9, hashes, profiles as a list of maps."""
+    """
+    metadata.yaml has the keys of rosbag2 Jazzy in its order, version 9, hashes, and profiles.
+
+    Profiles are a list of maps.
+    """
     with BagWriter(tmp_path / 'bag') as bag:
         bag.add_topic('imu/data_raw', topics.IMU)
         bag.write('/imu/data_raw', 5, topics.IMU_RAW.writer().pack(5, (0.0,) * 3, (0.0,) * 3))
@@ -93,7 +95,7 @@ def test_metadata_is_that_of_rosbag2(tmp_path):
 
 @pytest.mark.parametrize('type_name', [*TYPES, *(t for t, _ in strings().values())])
 def test_the_hash_of_a_type_is_that_of_ros(type_name):
-    """The hash equals that in the type descriptions installed by ROS."""
+    """The hash of each type equals that in the type descriptions installed by ROS."""
     package, kind, name = type_name.split('/')
     prefixes = [*filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(':')), sys.prefix]
     paths = [Path(p) / 'share' / package / kind / f'{name}.json' for p in prefixes]
@@ -106,7 +108,7 @@ def test_the_hash_of_a_type_is_that_of_ros(type_name):
 
 
 def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
-    """Schema version 4, one file, no log file beside it."""
+    """An SQLite bag has schema version 4 and one file, without a log file."""
     with BagWriter(tmp_path / 'bag', 'sqlite3') as bag:
         bag.add_topic('/t', topics.STRING)
         bag.write('/t', 1, bytes(STORE.serialize_cdr(STORE.types[topics.STRING]('x'),
@@ -126,7 +128,11 @@ def test_sqlite_has_the_tables_of_rosbag2(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_messages_out_of_order_come_in_order(storage, tmp_path):
-    """Log times may decrease within and across chunks and files; equal ones keep their order."""
+    """
+    Messages written out of order are read in order of log time; equal times keep their order.
+
+    Log times may decrease within and across chunks and files.
+    """
     rng = np.random.default_rng(3)
     log_ns = rng.integers(0, 10**10, 4000) // 10**6 * 10**6
     writer = topics.IMU_RAW.writer()
@@ -148,7 +154,7 @@ def test_messages_out_of_order_come_in_order(storage, tmp_path):
 
 
 def test_blocks_in_any_order_become_one_order(tmp_path):
-    """Equal times keep the order of the blocks, and unsorted blocks are sorted."""
+    """Blocks with equal times keep their order, and unsorted blocks are sorted."""
     writer = topics.ERROR_DRIFT.writer()
     a, b = np.array([30, 10, 20, 20]), np.array([20, 5])
     with BagWriter(tmp_path / 'bag') as bag:
@@ -164,7 +170,7 @@ def test_blocks_in_any_order_become_one_order(tmp_path):
 
 
 def test_frames_of_any_length_nan_and_equal_stamps(tmp_path):
-    """Messages of one topic may differ in length, and their numbers need not be finite."""
+    """Messages of one topic may differ in length and hold values that are not finite."""
     frames = ['', 'm', 'map', 'a_longer_frame', 'm', '']
     values = np.array([np.nan, np.inf, -np.inf, -0.0, 5e-324, 1.0])
     with BagWriter(tmp_path / 'bag') as bag:
@@ -200,7 +206,9 @@ def test_empty_bags_and_topics(storage, tmp_path):
 @pytest.mark.parametrize('names', [('a', 'b'), ('a', 'a')])
 def test_stamps_of_two_clocks(storage, names, tmp_path):
     """
-    Alternating stamps of two clocks do not give a chunk for each message; files follow each clock.
+    Alternating stamps of two clocks do not give a chunk for each message.
+
+    Files are split by the time of each clock.
     """
     with BagWriter(tmp_path / 'bag', storage, split_ns=2 * 10**9) as bag:
         for name in dict.fromkeys(names):
@@ -213,7 +221,7 @@ def test_stamps_of_two_clocks(storage, names, tmp_path):
     with open_bag(tmp_path / 'bag') as bag:
         assert sum(span.count for span in bag.spans().values()) == 4000
         files = bag.files
-    # Ten seconds by either clock.
+    # Ten seconds by each clock.
     assert len(files) == 5
     if storage == 'mcap':
         assert sum(path.stat().st_size for path in files) < 1.1 * 4000 * (324 + 31) + 5 * 6000

@@ -1,4 +1,4 @@
-"""For any bytes a bag gives valid messages or one message, quickly and in little memory."""
+"""For any bytes, reading a bag gives valid messages or one error, quickly and in little memory."""
 
 import time
 import tracemalloc
@@ -17,7 +17,7 @@ KINDS = [('mcap', 'none'), ('mcap', 'lz4'), ('mcap', 'zstd'), ('sqlite3', 'none'
 UNCHECKED = [('mcap', 'indexed'), ('mcap', 'scanned'), ('mcap', 'loose')]
 SUFFIX = {'mcap': '.mcap', 'sqlite3': '.db3'}
 N = 40
-# CPU time that only an endless loop takes: a correct reader needs milliseconds.
+# CPU time that only an endless loop needs, s: a correct reader needs milliseconds.
 GUARD_S = 60.0
 # A reader of the file below needs some 300 kB, more for Python objects than for data.
 BYTES = 20_000_000
@@ -88,7 +88,7 @@ def read_all(path):
 
 
 def sound_or_refused(path, data):
-    """Read a file of these bytes, and check time, memory and the kind of error."""
+    """Read a file with these bytes; check time, memory and the type of the error."""
     path.write_bytes(data)
     path.with_name(path.name + '-wal').unlink(missing_ok=True)
     tracemalloc.start()
@@ -120,7 +120,7 @@ def changed(data, flips, cut):
 
 @pytest.mark.parametrize('kind', KINDS + UNCHECKED, ids='-'.join)
 def test_bytes_flipped_and_cut(kind, files):
-    """Bytes are flipped and files truncated at random places."""
+    """Files with flipped bytes and files truncated at random give messages or one error."""
     folder, found = files
     path = folder / f'flipped{SUFFIX[kind[0]]}'
 
@@ -134,7 +134,11 @@ def test_bytes_flipped_and_cut(kind, files):
 
 @pytest.mark.parametrize('kind', KINDS + UNCHECKED, ids='-'.join)
 def test_every_byte_outside_of_the_data(kind, files):
-    """Records of MCAP, headers and first cells of SQLite pages."""
+    """
+    Any byte changed outside the data gives messages or one error.
+
+    The bytes are those of MCAP records, and the headers and first cells of SQLite pages.
+    """
     folder, found = files
     data, path = found[kind], folder / f'each{SUFFIX[kind[0]]}'
     if kind[0] == 'mcap':
@@ -157,7 +161,7 @@ def test_every_byte_outside_of_the_data(kind, files):
 @given(strategies.binary(max_size=400), strategies.sampled_from(['.mcap', '.db3']),
        strategies.booleans())
 def test_noise(tmp_path_factory, data, suffix, behind_magic):
-    """Random bytes, with the right magic number or without."""
+    """Random bytes, with the right magic number or without, give messages or one error."""
     magic = {'.mcap': b'\x89MCAP0\r\n\x01\x08' + bytes(7) + bytes(8),
              '.db3': b'SQLite format 3\x00\x10\x00\x01\x01\x00\x40\x20\x20'}[suffix]
     path = tmp_path_factory.getbasetemp() / f'noise{suffix}'
@@ -168,7 +172,7 @@ def test_noise(tmp_path_factory, data, suffix, behind_magic):
 @given(strategies.sampled_from(sorted(LAYOUTS)), strategies.lists(strategies.tuples(
     strategies.text(max_size=9), flips, cuts), min_size=1, max_size=8))
 def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages):
-    """Each message is read, or refused, as messages.cdr.Reader does."""
+    """Arrays are read, or refused, exactly as messages.cdr.Reader reads each message."""
     layout, data = LAYOUTS[type_name], []
     for text, changes, cut in messages:
         text = text.replace('\x00', '')
@@ -192,7 +196,7 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
     except ValueError:
         assert refused
         return
-    # Stamps with too many nanoseconds, which the reader of single messages refuses, are counted.
+    # Stamps with too many nanoseconds are counted; the reader of single messages refuses them.
     assert refused == bool(odd)
     if refused:
         return
@@ -204,7 +208,7 @@ def test_arrays_are_what_the_reader_of_single_messages_says(type_name, messages)
 
 
 def test_a_chunk_that_says_it_is_huge_takes_no_memory(files):
-    """Each size field of the first chunk is set to its maximum."""
+    """A size field of the first chunk set to its greatest value does not allocate that memory."""
     folder, found = files
     for kind in KINDS[:3]:
         data = found[kind]

@@ -1,4 +1,4 @@
-"""Truncated, corrupt, foreign or existing bags: one message each, and exit code 2."""
+"""Truncated, corrupt, foreign or existing bags give one message each, and exit code 2."""
 
 import os
 from pathlib import Path
@@ -19,7 +19,7 @@ STAMPS = np.arange(N) * 10**7
 
 
 def test_what_is_no_bag(tmp_path, capsys):
-    """A missing path, another folder, a text, an empty file, another database."""
+    """A missing path, another folder, a text, an empty file and another database are refused."""
     refused(tmp_path / 'absent', 'does not exist', capsys)
     refused(tmp_path, 'is not a bag; expected metadata.yaml', capsys)
     (tmp_path / 'text.csv').write_text('a,b\n')
@@ -38,7 +38,7 @@ def test_what_is_no_bag(tmp_path, capsys):
     refused(tmp_path, 'is not a bag', capsys)
 
 
-# Ten times ten times ... ten strings, in nine lines.
+# A YAML bomb: nine lines that expand to 10^9 strings.
 BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n' + ''.join(
     f'a{k}: &a{k} [{", ".join([f"*a{k - 1}"] * 10)}]\n' for k in range(1, 9))
 
@@ -64,13 +64,13 @@ BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n' + ''.join(
     ('rosbag2_bagfile_information: {version: 5, storage_identifier: sqlite3, compression_format: '
      'zstd, compression_mode: FILE}', 'is compressed by file (zstd)')])
 def test_metadata_that_does_not_do(text, sentence, tmp_path, capsys):
-    """metadata.yaml that is broken, too new, or of a bag compressed as a whole."""
+    """Invalid metadata.yaml is refused: broken, too new, or of a bag compressed as a whole."""
     (tmp_path / 'metadata.yaml').write_text(text)
     refused(tmp_path, sentence, capsys)
 
 
 def test_metadata_that_is_no_text(tmp_path, capsys):
-    """metadata.yaml that is not UTF-8, or a link that leaves the bag."""
+    """metadata.yaml that is not UTF-8 is refused; file names cannot leave the bag."""
     (tmp_path / 'metadata.yaml').write_bytes(b'\xff\xfe\x00')
     refused(tmp_path, 'is not UTF-8 text', capsys)
     write(tmp_path / 'bag')
@@ -82,7 +82,7 @@ def test_metadata_that_is_no_text(tmp_path, capsys):
 
 
 def test_bags_compressed_by_rosbags_as_a_whole(tmp_path, capsys):
-    """Both compression modes of rosbag2 itself are refused by name."""
+    """A bag compressed as a whole is refused; the message names the mode of rosbag2."""
     rosbag2 = pytest.importorskip('rosbags.rosbag2')
     from rosbags.typesys import get_typestore, Stores
     for mode in ('FILE', 'MESSAGE'):
@@ -97,7 +97,11 @@ def test_bags_compressed_by_rosbags_as_a_whole(tmp_path, capsys):
 
 
 def test_topics_that_are_not_as_expected(tmp_path):
-    """Missing, of another type, of a type without a layout, not CDR, without a field."""
+    """
+    A topic that cannot be read into arrays gives one message each.
+
+    Causes: missing, of another type, of a type without a layout, not CDR, without a field.
+    """
     with BagWriter(tmp_path / 'bag') as bag:
         bag.add_topic('imu/data_raw', topics.IMU)
         bag.add_topic('sim/status', topics.STRING)
@@ -123,7 +127,7 @@ def test_topics_that_are_not_as_expected(tmp_path):
 
 
 def test_what_cannot_be_written(tmp_path):
-    """Unknown storage, compression, type, topic; an existing bag; negative times."""
+    """Unknown options, types and topics, existing bags and negative times are refused."""
     for options, sentence in (
             ({'storage': 'rocks'}, 'expected one of mcap, sqlite3'),
             ({'compression': 'gzip'}, 'expected one of none, lz4, zstd'),
@@ -156,7 +160,7 @@ def test_what_cannot_be_written(tmp_path):
 
 
 def test_a_bag_is_replaced_only_when_the_new_one_is_whole(tmp_path):
-    """The old one stays until then, and only a bag is replaced at all."""
+    """The old bag is kept until the new one is complete, and only a bag is ever replaced."""
     path = write(tmp_path / 'bag')
     before = (path / 'bag_0.mcap').read_bytes()
     bag = BagWriter(path, 'sqlite3', replace=True)
@@ -177,7 +181,7 @@ def test_a_bag_is_replaced_only_when_the_new_one_is_whole(tmp_path):
 
 @pytest.fixture
 def nobody():
-    """Run the test as a user that owns nothing (if root); provide a folder that it may enter."""
+    """Run the test as a user without rights (if root), in a folder that this user may enter."""
     folder = Path(tempfile.mkdtemp())
     folder.chmod(0o755)
     yield folder, lambda: os.getuid() or os.seteuid(65534)
@@ -187,7 +191,7 @@ def nobody():
 
 
 def test_no_permission(nobody, capsys):
-    """No permission to read a file or to write into a folder, for both verbs."""
+    """Without permission to read a file or to write into a folder, both verbs give one message."""
     folder, become = nobody
     write(folder / 'bag')
     (folder / 'bag' / 'bag_0.mcap').chmod(0)

@@ -1,4 +1,4 @@
-"""The replacement of rosbags at run time equals rosbags: definitions, hashes and transforms."""
+"""The built-in replacement of rosbags gives equal definitions, hashes and transforms."""
 
 import subprocess
 import sys
@@ -13,14 +13,14 @@ typesys = pytest.importorskip('rosbags.typesys')
 STORE = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
 TF = 'tf2_msgs/msg/TFMessage'
 TOOLS = ROOT / 'tools'
-# Frame names of every length modulo eight occur, and so every padding.
+# Frame names of every length modulo eight occur, and so does every padding.
 FRAMES = st.text(st.characters(exclude_characters='\0', exclude_categories=['Cs']), max_size=10)
 NUMBERS = st.floats(allow_nan=False, width=64)
 TRANSFORMS = st.lists(st.tuples(FRAMES, FRAMES, st.tuples(*[NUMBERS] * 4)), max_size=4)
 
 
 def test_the_table_is_what_the_script_writes(monkeypatch):
-    """`tools/make_message_types.py` gives the committed file again."""
+    """`tools/make_message_types.py` generates exactly the committed file."""
     monkeypatch.syspath_prepend(str(TOOLS))
     import make_message_types
     assert make_message_types.text() == TABLE.read_text(encoding='utf-8')
@@ -35,13 +35,13 @@ def test_every_type_has_the_definition_and_hash_of_rosbags():
 
 
 def test_an_unknown_type_is_one_sentence():
-    """An unknown type is refused in one sentence; the recorder then asks ROS."""
+    """An unknown type is refused with one message; the recorder then asks ROS."""
     with pytest.raises(ValueError, match="the type 'my_msgs/msg/Thing' is not known"):
         message_definition('my_msgs/msg/Thing')
 
 
 def test_definitions_need_no_library():
-    """Only the standard library is imported for them."""
+    """Definitions need only the standard library."""
     code = ('import sys; before = set(sys.modules); from ins_sim.bags import definitions; '
             'definitions.message_definition("sensor_msgs/msg/Imu"); '
             'print(*{n.partition(".")[0] for n in set(sys.modules) - before})')
@@ -51,7 +51,7 @@ def test_definitions_need_no_library():
 
 
 def packed(transforms):
-    """Return a TFMessage as rosbags serializes it."""
+    """Return a TFMessage serialized by rosbags."""
     def make(name, **values):
         return STORE.types[name](**values)
 
@@ -68,13 +68,13 @@ def packed(transforms):
 
 @given(TRANSFORMS)
 def test_transforms_are_those_that_rosbags_packed(transforms):
-    """Transforms with frames of any length and alphabet equal those of rosbags."""
+    """Transforms with frames of any length and alphabet equal those packed by rosbags."""
     assert read_rotations(packed(transforms)) == transforms
 
 
 @given(TRANSFORMS, st.data())
 def test_a_cut_message_is_refused(transforms, draw):
-    """For any cut the error is a ValueError."""
+    """A message cut anywhere raises a ValueError."""
     whole = packed(transforms)
     stop = draw.draw(st.integers(0, len(whole) - 1))
     with pytest.raises(ValueError):
@@ -83,7 +83,7 @@ def test_a_cut_message_is_refused(transforms, draw):
 
 @given(st.binary(max_size=100))
 def test_other_bytes_are_read_or_refused(data):
-    """Random bytes raise only ValueError."""
+    """Random bytes are read or raise a ValueError, never another exception."""
     try:
         read_rotations(b'\0\1\0\0' + data)
     except ValueError:
@@ -91,7 +91,7 @@ def test_other_bytes_are_read_or_refused(data):
 
 
 def test_bytes_behind_the_last_transform_are_refused():
-    """Up to three bytes are padding; more mean that the message is something else."""
+    """Up to three bytes behind the last transform are padding; more raise a ValueError."""
     whole = packed([('a', 'b', (0.0, 0.0, 0.0, 1.0))])
     assert read_rotations(whole + b'\0' * 3) == read_rotations(whole)
     with pytest.raises(ValueError, match='4 bytes after its last transform'):

@@ -1,4 +1,4 @@
-"""Bags are read back by us, rosbags, mcap and rclpy, and we read theirs."""
+"""Our bags are read by our reader, rosbags, mcap and rclpy, and we read the bags of others."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
@@ -58,7 +58,7 @@ def test_any_reader_of_rosbags_needs_nothing_but_the_bag(tmp_path):
 
 @pytest.mark.parametrize('compression', ['none', 'lz4', 'zstd'])
 def test_the_mcap_library_agrees(compression, tmp_path):
-    """With checksums verified: messages, schemas, statistics, metadata, indices."""
+    """The mcap library finds our messages, schemas, statistics, metadata and indices."""
     mcap_reader = pytest.importorskip('mcap.reader')
     expected = write_everything(tmp_path / 'bag', 'mcap', compression)
     with open(tmp_path / 'bag' / 'bag_0.mcap', 'rb') as stream:
@@ -84,7 +84,7 @@ def test_the_mcap_library_agrees(compression, tmp_path):
         inner = yaml.safe_load(kept.metadata['serialized_metadata'])
     whole = yaml.safe_load((tmp_path / 'bag' / 'metadata.yaml').read_text())
     assert inner == whole['rosbag2_bagfile_information']
-    # Without its index the file is read from front to end, and checked as well.
+    # A file without its index is read, and checked, from front to end.
     from mcap.stream_reader import StreamReader
     with open(tmp_path / 'bag' / 'bag_0.mcap', 'rb') as stream:
         assert sum(1 for _ in StreamReader(stream, validate_crcs=True).records) > N
@@ -92,7 +92,7 @@ def test_the_mcap_library_agrees(compression, tmp_path):
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_rclpy_reads_what_is_written(storage, compression, tmp_path):
-    """Every message of a bag can be deserialised by rclpy."""
+    """rclpy can deserialise every message of a bag."""
     serialization = pytest.importorskip('rclpy.serialization')
     from importlib import import_module
     write_everything(tmp_path / 'bag', storage, compression)
@@ -108,7 +108,7 @@ def test_rclpy_reads_what_is_written(storage, compression, tmp_path):
 @pytest.mark.parametrize('storage, compression', [
     ('MCAP', 'NONE'), ('MCAP', 'STORAGE'), ('SQLITE3', 'NONE')])
 def test_what_rosbags_writes_is_read(storage, compression, tmp_path):
-    """Complete bags, and their files alone."""
+    """Bags written by rosbags, and their single files, are read."""
     bag = rosbag2.Writer(tmp_path / 'bag', version=9,
                          storage_plugin=rosbag2.StoragePlugin[storage])
     bag.set_compression(rosbag2.CompressionMode[compression], rosbag2.CompressionFormat.ZSTD)
@@ -133,7 +133,7 @@ def test_what_rosbags_writes_is_read(storage, compression, tmp_path):
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_bytes_are_those_of_rosbags(type_name):
-    """rosbags pads with zeros as we do, so equal messages are equal bytes."""
+    """Equal messages are equal bytes, because rosbags pads with zeros as we do."""
     for frames in (('', ''), ('m', 'ab'), ('map', 'base_link')):
         data = writer_of(type_name, frames).pack(int(STAMPS[7]), values_of(type_name)[0])
         message = STORE.deserialize_cdr(data, type_name)
@@ -141,7 +141,7 @@ def test_bytes_are_those_of_rosbags(type_name):
 
 
 def test_a_status_of_a_fix_is_read(tmp_path):
-    """The small integers of NavSatFix are read back too."""
+    """The small integers of NavSatFix are read back."""
     fix, status = STORE.types[topics.FIX], STORE.types['sensor_msgs/msg/NavSatStatus']
     time, header = STORE.types['builtin_interfaces/msg/Time'], STORE.types[topics.HEADER]
     with BagWriter(tmp_path / 'bag') as bag:
@@ -159,7 +159,7 @@ def test_a_status_of_a_fix_is_read(tmp_path):
 
 
 def test_files_without_chunks_or_index_are_read(tmp_path):
-    """Files of the rosbag2 preset fastwrite, and of writers without an index, are read."""
+    """Files of the rosbag2 preset fastwrite, and of writers without an index, can be read."""
     mcap_writer = pytest.importorskip('mcap.writer')
     for k, options in enumerate([{'use_chunking': False},
                                  {'index_types': mcap_writer.IndexType.NONE},
@@ -183,7 +183,7 @@ def test_files_without_chunks_or_index_are_read(tmp_path):
 
 
 def test_a_copy_carries_types_that_are_not_known(tmp_path):
-    """Definition, hash and profile are copied from bag to bag."""
+    """A copied bag keeps definition, hash and profile of unknown types."""
     with BagWriter(tmp_path / 'one') as bag:
         bag.add_topic('/x', 'my_msgs/msg/Thing', definition='int32 a\n', type_hash='RIHS01_0')
         bag.write('/x', 1, b'\x00\x01\x00\x00\x05\x00\x00\x00')

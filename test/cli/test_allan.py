@@ -1,4 +1,4 @@
-"""The command allan, from settings, a run and a bag; nothing is silently wrong."""
+"""The command allan on settings, a run and a bag; faulty input is never analysed silently."""
 
 import json
 
@@ -18,7 +18,7 @@ SIGMA = np.array([0.01, 0.02, 0.03])
 
 
 def rows(folder):
-    """Return {(triad, symbol): row} of a finished folder; check its pictures and its report."""
+    """Return {(triad, symbol): row} of a result folder; check its pictures and its report."""
     assert 'Allan deviation of the gyro' in (folder / 'report.html').read_text(encoding='utf-8')
     for triad in ('gyro', 'accelerometer'):
         assert (folder / f'{triad}.png').read_bytes().startswith(b'\x89PNG')
@@ -28,7 +28,7 @@ def rows(folder):
 
 def test_round_trip_from_the_settings(tmp_path, capsys):
     """
-    Records of three hours of the FOG at rest: N within 5 %, B within 20 %, K within 30 %.
+    Three hours of the FOG at rest give N within 5 %, B within 20 %, K within 30 % of the settings.
 
     From seed to seed B scatters by 13 % and K by 20 %, and one may hide the other: the root mean
     square of three records is compared with the bounds. Pulses are five times those of the preset,
@@ -56,7 +56,7 @@ def test_round_trip_from_the_settings(tmp_path, capsys):
 
 
 def test_a_run_is_analysed_with_its_own_parameters(tmp_path, capsys):
-    """The record of the folder, the settings beside it, and a note about motion."""
+    """A run is compared with its own parameters, and a note mentions its motion."""
     run, out = tmp_path / 'run', tmp_path / 'out'
     arguments = ['simulate', *FOG, '-p', 'duration_s:=300.0', '--no-twin', '-o', str(run)]
     assert main([*arguments, '-p', 'motion.kind:=static']) == 0
@@ -85,13 +85,17 @@ def write_bag(path, t_ns, *names):
             connection = bag.add_connection(name, topics.IMU, typestore=store)
             for t in t_ns.tolist():
                 values = rng.normal(size=3)
-                # Messages are received late and unevenly: the stamp of the header counts.
+                # Messages are logged with irregular delays: the stamp of the header is used.
                 bag.write(connection, t + int(rng.integers(9_000_000)),
                           pack(t, SIGMA * values, 10.0 * SIGMA * rng.normal(size=3)))
 
 
 def test_a_bag_of_imu_messages(tmp_path, capsys):
-    """White noise of known size by axis is found; with two topics the topic must be given."""
+    """
+    White noise of a bag is found on each axis within 6 % of its known size.
+
+    With two topics --topic is required; lost readings and repeated stamps are reported.
+    """
     t_ns = 1_700_000_000_000_000_000 + 10_000_000 * np.arange(4000)
     write_bag(tmp_path / 'one', t_ns, '/imu/data')
     assert main(['allan', str(tmp_path / 'one'), '-o', str(tmp_path / 'out')]) == 0
@@ -130,7 +134,7 @@ def test_a_bag_of_imu_messages(tmp_path, capsys):
 
 
 def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
-    """Exit code 2, the old ones stay; --force replaces only what this command wrote."""
+    """Results are kept with exit code 2; --force replaces only what this command wrote."""
     out = tmp_path / 'out'
     arguments = ['allan', *FOG, '--duration', '60', '-o', str(out)]
     assert main(arguments) == 0
@@ -158,7 +162,7 @@ def test_figures_are_never_overwritten_without_force(tmp_path, capsys):
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and there is no traceback."""
+    """Invalid input gives one message and exit code 2, and nothing is written."""
     monkeypatch.chdir(tmp_path)
     assert main(['allan', *arguments]) == 2
     error = capsys.readouterr().err
@@ -167,7 +171,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, sentence, tmp_path
 
 
 def test_a_folder_that_is_no_run_is_named(tmp_path):
-    """Foreign arrays, and a file that is not an archive, are refused."""
+    """Foreign arrays and a file that is not an archive are refused by name."""
     np.savez(tmp_path / storage.ARRAYS, truth_t_ns=np.arange(3))
     with pytest.raises(ValueError, match='run.npz holds no IMU record'):
         storage.read_imu(tmp_path)
@@ -177,7 +181,7 @@ def test_a_folder_that_is_no_run_is_named(tmp_path):
 
 
 def test_a_perfect_axis_is_left_out():
-    """Noise on one of three axes gives its coefficients; a perfect triad gives nothing."""
+    """Noise on one of three axes gives coefficients of this axis; a perfect triad gives none."""
     settings = parameter_files.read([], [
         'rate_hz:=10.0', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.0, 0.1, 0.0]'])
     imu = ImuSamples.concatenate(resting_record(settings, 200.0))
@@ -195,7 +199,9 @@ def test_a_perfect_axis_is_left_out():
 
 def test_expected_coefficients_of_the_settings():
     """
-    Pulses over sqrt(12); an in-run bias of 0.3 deg/h with infinite time adds to a walk of 0.4.
+    Expected coefficients: pulses over sqrt(12); an endless in-run bias adds to the random walk.
+
+    An in-run bias of 0.3 deg/h with infinite correlation time adds to a walk of 0.4 deg/h/sqrt(h).
     """
     errors = GyroErrors(quantisation_arcsec=(1.0,) * 3, gauss_markov_sigma_deg_h=(0.3,) * 3,
                         gauss_markov_time_s=(float('inf'), float('inf'), 100.0),

@@ -30,7 +30,7 @@ def bag_of(tmp_path, *arguments, name='bag', motion=MOTION):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
-    """The bag has every topic at its stamps, with the numbers of the offline run."""
+    """The bag of a run has every topic at its stamps, with the numbers of the offline run."""
     path = bag_of(tmp_path, '--storage', storage)
     shown = capsys.readouterr().out
     assert 'written: ' in shown and f'{1 + 11 * 501} messages on 12 topics' in shown.replace(
@@ -51,9 +51,9 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
         assert set(bag.topics) == NAMES and not bag.cut
         for topic, values in expected.items():
             if topic is topics.IMU_DATA:
-                # Not requested.
+                # This topic was not requested.
                 continue
-            # Not published by a perfect IMU.
+            # A perfect IMU does not publish this topic.
             writer = (topics.imu_raw((0.0,) * 3, (0.0,) * 3) if topic is topics.IMU_RAW
                       else topic).writer()
             messages = list(bag.messages([topic.name]))
@@ -69,7 +69,7 @@ def test_the_bag_of_a_run_is_the_run(storage, tmp_path, capsys):
 
 @pytest.mark.parametrize('options', [(), ('--compression', 'zstd'), ('--storage', 'sqlite3')])
 def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
-    """The printed digests are those of the files, and equal only for equal seeds."""
+    """The printed digests are those of the files, and are equal for equal seeds only."""
     motion = [*MOTION, '--params-file', 'imu_tactical_fog']
     sums = []
     for name, seed in (('a', 1), ('b', 1), ('c', 2)):
@@ -77,7 +77,7 @@ def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
         sums.append(re.findall(r'SHA-256 of .*: ([0-9a-f]{64})', capsys.readouterr().out))
         assert len(sums[-1]) == 2
     assert sums[0] == sums[1] and not set(sums[0]) & set(sums[2])
-    # Files of a bag contain its name: in a folder of another name only the messages are equal.
+    # Bag files contain their name: in a folder with another name only the messages are equal.
     bag_of(tmp_path, *options, '-p', 'seed:=1', name='other', motion=motion)
     said = capsys.readouterr().out
     assert re.search(r'SHA-256 of other_0\.\w+, which contains this file name: ', said)
@@ -91,7 +91,7 @@ def test_the_same_seed_gives_the_same_bytes(options, tmp_path, capsys):
 
 
 def test_topics_rates_and_epochs(tmp_path, capsys):
-    """Selected topics, /clock, outputs less often than readings, stamps from an epoch."""
+    """Topics, /clock, rates of outputs and the epoch of stamps are those of the options."""
     motion = [*MOTION, '-p', 'output_every:=10', '-p', 'time.epoch_s:=1000', '-p',
               'publish_clock:=true', '-p', 'initial.after_s:=1.0']
     path = bag_of(tmp_path, '--topics', 'truth/imu', '/ins/odometry', 'clock', motion=motion)
@@ -119,7 +119,7 @@ def test_topics_rates_and_epochs(tmp_path, capsys):
     (['--storage', 'sqlite3', '--compression', 'lz4'], 'sqlite3 cannot be compressed by lz4'),
     (['-p', 'time.epoch_s:=2147483647'], 'which a ROS stamp can hold')])
 def test_what_is_refused_before_the_run(arguments, sentence, tmp_path, capsys):
-    """One message, exit code 2, no bag."""
+    """Invalid options of a bag give one message and exit code 2 before the run, and no bag."""
     assert main(['simulate', *MOTION, '-o', str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag'),
                  *arguments]) == 2
     said = capsys.readouterr().err
@@ -128,7 +128,7 @@ def test_what_is_refused_before_the_run(arguments, sentence, tmp_path, capsys):
 
 
 def test_options_of_a_bag_need_a_bag(tmp_path, capsys):
-    """They would have no effect."""
+    """Options of a bag without --bag are refused, because they would have no effect."""
     for option in (['--storage', 'sqlite3'], ['--compression', 'lz4'], ['--topics', 'ins/fix']):
         assert main(['simulate', *MOTION, '-o', str(tmp_path / 'run'), *option]) == 2
         assert 'is given without --bag' in capsys.readouterr().err
@@ -151,7 +151,7 @@ def test_a_bag_is_replaced_with_force_alone(tmp_path, capsys):
 
 
 def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch, capsys):
-    """After Ctrl-C while it is written there is not a bag; exit code 130."""
+    """Ctrl-C while a bag is written leaves no bag; exit code 130."""
     from ins_sim.bags import windows
 
     def interrupt(*arguments):

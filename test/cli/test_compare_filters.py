@@ -1,4 +1,4 @@
-"""The command compare-filters: tables, figures, report, and invalid input."""
+"""The command compare-filters: tables, figures, report, and messages for invalid input."""
 
 import json
 import re
@@ -22,18 +22,18 @@ def digest(text):
 
 
 def test_the_command_shows_table_and_figure(tmp_path, capsys):
-    """Six filters and two more windows of eskf; one process or two give equal numbers."""
+    """Six filters, and eskf with two more windows, give equal rows with one process or two."""
     words = ['--cycles', '100', '1000', '10']
     rows = compare(tmp_path / 'a', *words)
     text = capsys.readouterr().out
     assert [(r['filter'], r['cycles']) for r in rows] == [
         *((name, 100) for name in FILTERS), ('eskf', 1000), ('eskf', 10)]
     assert all(r['flights'] == 2 and 0.0 < r['end_m'] < 1000.0 for r in rows)
-    # For any width of the terminal.
+    # This holds for any width of the terminal.
     assert 'refuses a window in which the body turns' in ' '.join(text.split())
     for figure in ('comparison.png', 'consistency.png', 'flights.png'):
         assert (tmp_path / 'a' / figure).stat().st_size > 20000
-    # Quantities that are not estimated are not judged; window_kf has no attitude.
+    # Quantities that a filter does not estimate are not compared; window_kf has no attitude.
     blocks = {r['filter']: list(r['nees']) for r in rows}
     assert blocks == {
         'free': [], 'conventional': [], 'paper': [], 'paper_corrected': [],
@@ -49,8 +49,9 @@ def test_the_command_shows_table_and_figure(tmp_path, capsys):
 
 def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
     """
-    Finished flights are not repeated, those of other settings are refused; all are removed at the
-    end.
+    An interrupted study is resumed without repeating finished flights.
+
+    Blocks of a study with other settings are refused; at the end all blocks are deleted.
     """
     from ins_sim.studies import filters
     fly, flown = filters.fly_filters, []
@@ -90,7 +91,7 @@ def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
     (['-p', 'filtre:=eskf'], "unknown parameter 'filtre'; the nearest known one is 'filter'"),
 ])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2, one message, and no folder."""
+    """Invalid input gives one message and exit code 2, and no folder."""
     assert main(['compare-filters', '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1
@@ -98,7 +99,7 @@ def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
 
 
 def test_an_existing_folder_is_kept(tmp_path, capsys):
-    """Without --force nothing is replaced; with it only a comparison is."""
+    """A folder that is not a comparison is kept, even with --force."""
     (tmp_path / 'mine').mkdir()
     (tmp_path / 'mine' / 'thesis.txt').write_text('years of work')
     for words in ([], ['--force']):

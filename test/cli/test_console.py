@@ -26,7 +26,11 @@ ROWS = [SummaryRow(f'a figure with quite a long name, number {k}', 'm/s^2', floa
 
 @pytest.mark.parametrize('terminal, width', [(False, 80), (True, 80), (True, 40), (True, 200)])
 def test_numbers_are_never_cut(terminal, width):
-    """In a pipe, and in a terminal too narrow for the table, where names are folded."""
+    """
+    Numbers are complete in a pipe, and in a terminal too narrow for the table.
+
+    There the names are folded instead.
+    """
     out = io.StringIO()
     console = PlainConsole(file=out, force_terminal=terminal, width=width, color_system=None)
     table.show_table('a title [rad/s]', ROWS, console)
@@ -49,7 +53,7 @@ def test_words_are_as_they_are():
 
 
 def test_progress_in_a_pipe(monkeypatch, capsys):
-    """One line after a moment and then now and then, with the remaining time."""
+    """In a pipe progress is printed as a line every 30 s, with the remaining time."""
     clock = [0.0]
     monkeypatch.setattr(progress.time, 'monotonic', lambda: clock[0])
     with progress.progress_bars(PlainConsole(file=io.StringIO())) as add_bar:
@@ -69,7 +73,7 @@ def test_progress_in_a_pipe(monkeypatch, capsys):
 
 
 def test_names_of_a_bag_cannot_command_the_terminal(tmp_path, capsys):
-    """info and refusals show escape sequences and line breaks as text."""
+    """info and errors print escape sequences and line breaks in topic names as text."""
     path = tmp_path / 'bag'
     with BagWriter(path) as bag:
         bag.add_topic('/a\x1b[2J\nstate     whole', topics.STRING)
@@ -83,7 +87,7 @@ def test_names_of_a_bag_cannot_command_the_terminal(tmp_path, capsys):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_name_of_a_bag_does_not_part_a_sentence(storage, tmp_path):
-    """Exceptions of the API are one sentence as well, for any topic name."""
+    """Exceptions of the API stay on one line for any topic name."""
     with BagWriter(tmp_path / 'bag', storage) as bag:
         bag.add_topic('/i\nu', topics.IMU)
     with open_bag(tmp_path / 'bag') as bag:
@@ -95,9 +99,7 @@ def test_a_name_of_a_bag_does_not_part_a_sentence(storage, tmp_path):
 @pytest.mark.parametrize('environment', [
     {'LC_ALL': 'C', 'PYTHONUTF8': '0', 'PYTHONCOERCECLOCALE': '0'}, {'LC_ALL': 'C.UTF-8'}])
 def test_names_that_are_no_text(environment, tmp_path):
-    """
-    A folder whose name is not UTF-8, or not representable in an ASCII locale, is written normally.
-    """
+    """A folder whose name is not UTF-8, or not ASCII in an ASCII locale, is written."""
     for name in (b'run_\xe9', 'caf\u00e9'.encode(), b'$\\a$_[b]'):
         ended = subprocess.run(
             [sys.executable, '-m', 'ins_sim', 'simulate', '-p', 'duration_s:=1.0', '-o', name],

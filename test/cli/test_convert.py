@@ -53,7 +53,7 @@ def test_truth_to_csv_to_bag_to_csv(name, storage, tmp_path, capsys):
     assert np.array_equal(rows.t_ns, fix['stamp_ns'])
     assert np.array_equal(rows.lat_deg, fix['latitude'])
     assert np.array_equal(rows.height_m, fix['altitude'])
-    # Over the date line the file wraps, and reading unwraps.
+    # Longitudes in the file jump by 360 deg at the date line; the reader removes the jump.
     assert np.abs(rows.lon_deg - np.degrees(truth.lon)).max() < 3e-14
     poses = csv_imu.read_reference(flight)[0]
     q = poses.attitude.values
@@ -157,7 +157,7 @@ def test_the_imu_of_a_run_navigates_from_csv_as_from_the_bag(tmp_path, capsys):
 
 
 def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
-    """Motion time zero stays: start_s counts from the first row of either."""
+    """Motion time zero is kept: start_s counts from the first row of either file."""
     record(tmp_path / 'bag', FLIGHT, 20.0)
     assert convert(tmp_path / 'bag', tmp_path / 'flight.csv') == 0
     capsys.readouterr()
@@ -174,7 +174,7 @@ def test_a_flight_of_the_bag_is_the_flight_of_the_csv(tmp_path, capsys):
 
 
 def test_nothing_is_overwritten_without_force(tmp_path, capsys):
-    """Exit code 2, the old one stays; --force replaces a file by a file and a bag by a bag."""
+    """An existing file is kept, exit code 2; --force replaces a file or a bag by its own kind."""
     csv_writer.write_imu(tmp_path / 'imu.csv', imu_of(10))
     assert convert(tmp_path / 'imu.csv', tmp_path / 'bag') == 0
     before = (tmp_path / 'bag' / 'metadata.yaml').read_bytes()
@@ -251,7 +251,7 @@ def early(path):
 ])
 def test_bad_input_is_one_sentence_and_exit_code_2(make, words, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and there is no traceback."""
+    """Invalid input gives one message and exit code 2, and nothing is written."""
     monkeypatch.chdir(tmp_path)
     if make is not None:
         make(tmp_path)
@@ -282,7 +282,7 @@ def test_a_part_of_another_process_is_left_alone(tmp_path):
 
 @pytest.mark.parametrize('content', ['flight', 'imu'])
 def test_stamps_of_an_unset_clock_are_told(content, tmp_path, capsys):
-    """A note states the remedy; with it there is no note. Valid stamps are unchanged."""
+    """Stamps before 2005 give a note; time.epoch fixed shifts them, and valid stamps are kept."""
     rows = [f'{0.1 * k:.1f},55.0,37.0,100.0,0,0,90,0,10.0,0' for k in range(200)]
     head = ','.join(COLUMNS)
     if content == 'imu':

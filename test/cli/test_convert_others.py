@@ -13,7 +13,7 @@ def convert(*words):
 
 
 def test_an_imu_of_others_by_a_map_of_its_columns(tmp_path, capsys):
-    """columns, units and stamps work as in navigate."""
+    """The parameters columns, units and stamps work as in navigate."""
     rows = '\n'.join(f'{k} {k},{0.1 * k:g},1,2,4,5,9.8'.replace(' ', ',') for k in range(20))
     (tmp_path / 'x.csv').write_text('n,tick,p,q,r,fx,fy,fz,note\n' + rows.replace('\n', ',a\n')
                                     + ',a\n')
@@ -56,12 +56,12 @@ def test_a_flight_of_others_by_a_map_of_its_columns(tmp_path):
      '5 whose specific force is exactly zero'),
     ({}, '')])
 def test_odd_samples_are_kept_and_said(spoil, says, tmp_path, capsys):
-    """A conversion leaves nothing out, and reports odd samples, in both directions."""
+    """A conversion keeps odd samples and reports them, in both directions."""
     rows = [spoil.get(k, f'0.{k:02d},0,0,0,0,0,9.8') for k in range(30)]
     (tmp_path / 'imu.csv').write_text('\n'.join(['t_s,' + ','.join(csv_imu.IMU), *rows, '']))
     for words in (['imu.csv', 'bag'], ['bag', 'back.csv']):
         if words[0] == 'bag' and 'goes back' in says:
-            # The log time is the stamp, by which a bag is sorted.
+            # A bag is sorted by log time, which is the stamp here.
             says = ''
         assert main(['convert', *(str(tmp_path / word) for word in words)]) == 0
         said = capsys.readouterr().out

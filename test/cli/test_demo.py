@@ -1,4 +1,4 @@
-"""The demo: both parts over DDS, and the state after an interruption."""
+"""The demo: both parts over DDS, and the state it leaves after an interruption."""
 
 import os
 import signal
@@ -30,7 +30,7 @@ def members(group):
 
 
 def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
-    """A complete run; then SIGTERM and SIGINT in the middle: exit 130, old results, no process."""
+    """The demo completes; after SIGTERM or SIGINT: exit 130, old results kept, no process."""
     folder, log = tmp_path / 'demo', tmp_path / 'log'
     with open(log, 'w') as stream:
         assert start(folder, 10.0, stream).wait(GUARD_S) == 0, log.read_text()
@@ -55,7 +55,7 @@ def test_demo_and_what_interruptions_leave(ros_domain, tmp_path):
 
 
 def test_a_killed_demo_leaves_no_node(ros_domain, tmp_path):
-    """After SIGKILL, which cannot be caught, the nodes end with the demo that started them."""
+    """After SIGKILL, which cannot be caught, the nodes end together with the demo."""
     with open(tmp_path / 'log', 'w') as stream:
         demo = start(tmp_path / 'demo', 3000.0, stream)
     end = time.monotonic() + GUARD_S

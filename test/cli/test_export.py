@@ -43,7 +43,7 @@ def test_a_preset_by_hand(tmp_path, capsys):
 
 
 def test_a_walk_alone_and_a_gauss_markov_process(tmp_path):
-    """K as given; sigma sqrt(2/T) for a Gauss-Markov process, sigma/60 for infinite T."""
+    """K is exported as given; a Gauss-Markov process as sigma sqrt(2/T), or, endless, sigma/60."""
     path = tmp_path / 'imu.yaml'
     words = ['-p', 'gyro.errors.angle_random_walk_deg_sqrt_h:=[0.6, 0.6, 0.6]',
              '-p', 'accelerometer.errors.velocity_random_walk_m_s_sqrt_h:=[0.6, 0.6, 0.6]',
@@ -56,13 +56,13 @@ def test_a_walk_alone_and_a_gauss_markov_process(tmp_path):
         found = yaml.safe_load(path.read_text())
         assert found['gyroscope_random_walk'] == pytest.approx(DEG / 3600.0, rel=1e-6)
         assert found['gyroscope_noise_density'] == pytest.approx(0.01 * DEG, rel=1e-6)
-        # The worst axis.
+        # The values of the worst axis are exported.
         assert found['accelerometer_random_walk'] == pytest.approx(max(walk, walks['200.0']),
                                                                    rel=1e-6)
 
 
 def test_axes_that_differ(tmp_path, capsys):
-    """The worst axis is used, and one message says so."""
+    """If the axes differ, the worst is used, and one note states this."""
     path = tmp_path / 'imu.yaml'
     assert export(path, '--params-file', 'imu_tactical_mems', '--topic', '/left/imu/data_raw',
                   '-p', 'imu_sensor:gyro.errors.angle_random_walk_deg_sqrt_h:=[0.1, 0.3, 0.2]'
@@ -82,7 +82,7 @@ def test_axes_that_differ(tmp_path, capsys):
     (['--params-file', 'imu_tactical_dtg'], 'gyro.model is dtg; expected ideal'),
     (['--params-file', 'absent'], "no config named 'absent'")])
 def test_refusals(words, said, tmp_path, capsys):
-    """One message, and no file."""
+    """Settings that cannot be exported give one message and no file."""
     path = tmp_path / 'imu.yaml'
     assert export(path, *words) == 2
     error = capsys.readouterr().err
@@ -91,7 +91,7 @@ def test_refusals(words, said, tmp_path, capsys):
 
 
 def test_what_is_there_is_kept(tmp_path, capsys):
-    """--force replaces a file, and never a folder, as for the other verbs."""
+    """As in the other verbs, --force replaces a file, and never a folder."""
     path = tmp_path / 'imu.yaml'
     path.write_text('mine')
     instrument = ['--params-file', 'imu_tactical_fog']
@@ -108,7 +108,7 @@ def test_what_is_there_is_kept(tmp_path, capsys):
     '--params-file racetrack --params-file imu_tactical_fog',
     '--aided --params-file route_flight --params-file imu_tactical_fog -p window.cycles:=100'])
 def test_the_instrument_of_a_run(words, tmp_path):
-    """parameters.yaml of a run, aided or not, gives the file of its preset."""
+    """The parameters.yaml of a run, aided or not, gives the same file as its preset."""
     assert main(['simulate', *words.split(), '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'run')]) == 0
     settings = tmp_path / 'run' / 'parameters.yaml'

@@ -1,4 +1,4 @@
-"""Ctrl-C ends every verb with one message, also while Python is importing."""
+"""Ctrl-C ends every verb with one message, even during the imports of Python."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ from ins_sim.cli.main import VERBS
 import pytest
 from support.places import ROOT
 
-# A module that is imported within others, at a time chosen by the test.
+# A module that is imported by others at a time chosen by the test.
 SLOW = """
 import os, signal, sys, time
 from importlib import import_module
@@ -38,7 +38,7 @@ WORDS = {'simulate': ['-p', 'duration_s:=600.0'], 'predict': ['-p', 'duration_s:
 
 
 def interrupted(verb, at, number, folder):
-    """Return how a verb ends that receives a signal in the middle of an import."""
+    """Return the result of a verb that receives a signal during an import."""
     return subprocess.run(
         [sys.executable, '-c', SLOW, verb, *WORDS.get(verb, [])], cwd=folder, text=True,
         capture_output=True, timeout=120.0, stdin=subprocess.DEVNULL,
@@ -48,10 +48,10 @@ def interrupted(verb, at, number, folder):
 @pytest.mark.parametrize('verb', VERBS)
 def test_a_signal_amid_imports(verb, tmp_path):
     """
-    During imports of the command line or of the verb: exit code 130, one message, nothing remains.
+    A signal during imports gives exit code 130 and one message, and nothing remains.
 
-    A verb that ends by itself within the time for which the import delays the signal has its own
-    exit code: a refusal, or that of a node.
+    A verb that ends by itself before the import passes the signal on has its own exit code: that
+    of a refusal, or of a node.
     """
     own = {'record': 0, 'play': 0}.get(verb, 2 if 'absent' in str(WORDS.get(verb)) else 130)
     for at, number in ((3, 'SIGINT'), (60, 'SIGTERM')):
@@ -66,7 +66,7 @@ def test_a_signal_amid_imports(verb, tmp_path):
 
 @pytest.fixture
 def handlers():
-    """Restore the signal handlers from before the test."""
+    """Restore the signal handlers after the test."""
     before = {number: signal.getsignal(number) for number in entry.SIGNALS}
     yield
     signal.setitimer(signal.ITIMER_REAL, 0.0)
@@ -75,7 +75,7 @@ def handlers():
 
 
 def test_an_interrupt_that_was_swallowed_comes_again(handlers):
-    """A signal within a destructor, which Python reports as ignored, is raised again."""
+    """A signal raised within a destructor, which Python reports as ignored, is raised again."""
     for number in entry.SIGNALS:
         signal.signal(number, entry._interrupt)
     with pytest.raises(KeyboardInterrupt):
@@ -88,7 +88,7 @@ def test_an_interrupt_that_was_swallowed_comes_again(handlers):
 
 
 def test_a_reader_that_goes_away(tmp_path):
-    """``ins_sim ... | head`` prints nothing more, and all files are written."""
+    """``ins_sim ... | head`` prints no error, and all files are written."""
     with subprocess.Popen([sys.executable, '-m', 'ins_sim', 'simulate', '-p', 'duration_s:=1.0',
                            '-o', 'run'], cwd=tmp_path, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True,

@@ -1,4 +1,4 @@
-"""The command loop-study: tables, figures, numbers, and invalid input."""
+"""The command loop-study: tables, figures, numbers, and messages for invalid input."""
 
 from dataclasses import replace
 import json
@@ -11,7 +11,7 @@ from ins_sim.studies import closed_loop, stability_map
 
 @pytest.fixture
 def short(monkeypatch):
-    """Shorten the study to flights of some seconds."""
+    """Shorten the flights of the study to some seconds."""
     table = [replace(case, duration_s=1.0) for case in closed_loop.TABLE[4:6]]
     monkeypatch.setattr(closed_loop, 'TABLE', table)
     monkeypatch.setattr(closed_loop, 'VARIED', table[:1])
@@ -28,14 +28,14 @@ def study(folder, *words):
 
 
 def test_flights_and_conditions(short, tmp_path, capsys):
-    """Rows with results of the chain, of the lateral channel alone, and the published ones."""
+    """Rows have results of the full simulation, of the lateral channel alone, and published."""
     found = study(tmp_path / 'a', '--parts', 'table', 'conditions')
     text = ' '.join(capsys.readouterr().out.split())
     assert 'Closed loop' in text and 'signals of the meter' in text
     rows = found['table']
     assert [row['case'] for row in rows] == ['sliding, N 1000, K_v 1', 'sliding, N 1000, K_v 50']
     assert all(row['published'] == {'beta_deg': 0.0} for row in rows)
-    # No window has ended yet.
+    # No window has ended by then.
     assert all(row['end_m'] == pytest.approx(row['lateral']['end_m'], abs=1e-3) for row in rows)
     assert [row['condition'] for row in found['conditions']] == ['noise of the meter',
                                                                  'signals of the meter']
@@ -48,7 +48,7 @@ def test_flights_and_conditions(short, tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_map(short, tmp_path):
-    """One panel with two gains has the linear limits and those from 1 m and 100 m."""
+    """One panel with two gains has the linear limits and the limits from 1 m and 100 m."""
     panel, = study(tmp_path / 'b', '--parts', 'map', '--gains', '2', '--jobs', '1')['map']
     assert panel['filter'] == 'sliding conventional, N 10'
     assert panel['flown']['1 m'] == pytest.approx(panel['linear'], rel=0.01)
@@ -64,7 +64,7 @@ def test_the_map(short, tmp_path):
      "'gain_per_s'"),
 ])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Exit code 2, one message, and no folder."""
+    """Invalid input gives one message and exit code 2, and no folder."""
     assert main(['loop-study', '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1

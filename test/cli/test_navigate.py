@@ -1,4 +1,4 @@
-"""The command navigate on bags: the loop closes, and faults give one message."""
+"""The command navigate on bags: simulated recordings give the truth; faults give one message."""
 
 import json
 import math
@@ -95,7 +95,7 @@ def test_a_moving_start_navigates_back_to_the_truth(storage, tmp_path, capsys):
         assert arrays['states_q_nb'].shape == (2001, 4)
         assert arrays['states_t_ns'][0] == EPOCH
         assert arrays['error_0_position'].shape == (101, 3)
-    # The parameters can be used again.
+    # The parameters of a run can be given to the command again.
     assert main(['navigate', str(bag), '--params-file', str(out / 'parameters.yaml'), '-o',
                  str(tmp_path / 'again')]) == 0
     with np.load(out / 'nav.npz') as a, np.load(tmp_path / 'again' / 'nav.npz') as b:
@@ -149,9 +149,7 @@ def test_a_bag_of_our_own_nodes_aligns_itself_and_navigates(tmp_path, capsys):
 
 
 def drive(start_s=20.0, length_s=60.0, heading_deg=70.0):
-    """
-    Return times, velocity and position of a car: at rest, then straight on, 1 m/s^2 to 10 m/s.
-    """
+    """Return times, velocity, position of a car: at rest, then straight at 1 m/s^2 to 10 m/s."""
     t = np.arange(round(length_s * 50.0) + 1) / 50.0
     moved = np.clip(t - start_s, 0.0, 10.0)
     speed = moved + 0.0
@@ -162,7 +160,7 @@ def drive(start_s=20.0, length_s=60.0, heading_deg=70.0):
 
 
 def car(tmp_path, bias=0.002, with_fix=True, frame='imu_link'):
-    """Return a bag of the car with an upward MEMS gyro bias, level, and a fix at 5 Hz."""
+    """Return a bag of a level car with MEMS gyros biased about the vertical, and fixes at 5 Hz."""
     t, v, way, pushed = drive()
     t_ns = np.round(t * 1e9).astype(np.int64)
     lat0, n = math.radians(50.0), len(t)
@@ -184,7 +182,7 @@ def car(tmp_path, bias=0.002, with_fix=True, frame='imu_link'):
 
 def test_a_car_of_coarse_gyros_takes_bias_and_course(tmp_path, capsys):
     """
-    MEMS: no gyrocompass; bias from the standstill, heading 70 deg from the course of the fix.
+    MEMS gyros need no gyrocompass: bias from the standstill, heading of 70 deg from the course.
 
     The heading bound is the random walk of the rate noise, 1e-3 rad/s at 50 Hz over the 27 s to 20
     m, plus the bias error after 20 s of averaging: sqrt(27 / 50) 1e-3 + 27 1e-3 / sqrt(1000),
@@ -204,7 +202,11 @@ def test_a_car_of_coarse_gyros_takes_bias_and_course(tmp_path, capsys):
 
 
 def test_the_odometry_is_laid_on_the_start(tmp_path):
-    """In a frame of unknown origin and heading the truth agrees with the truth again."""
+    """
+    Reference odometry in a frame of unknown origin and heading is aligned to the start.
+
+    The errors against it are then those of the truth.
+    """
     _, motion = motion_of('motion.kind:=sinusoids')
     truth, recorded = truth_topics(motion, 20.0)
     generator = motion_of('motion.kind:=sinusoids')[0].motion_generator
@@ -227,7 +229,7 @@ def test_the_odometry_is_laid_on_the_start(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_twist_with_covariance_is_the_same_velocity(storage, tmp_path, capsys):
-    """Both types of message give the same numbers."""
+    """TwistStamped and TwistWithCovarianceStamped give the same numbers."""
     _, motion = motion_of('motion.kind:=sinusoids')
     ends = []
     for name in (TWIST, COVARIANCE_TWIST):
@@ -249,7 +251,7 @@ IMU_ONLY = dict(t_ns=np.arange(1000) * 20_000_000, omega=np.zeros((1000, 3)),
 
 
 def test_stamps_that_were_never_set_give_way_to_the_times_of_logging(tmp_path, capsys):
-    """This is stated in the notes."""
+    """If stamps were never set, the log times are used, and a note states this."""
     bag = write_bag(tmp_path / 'bag', {('/imu', IMU): resting(stamps=np.zeros(1000))})
     assert main(['navigate', str(bag), '-o', str(tmp_path / 'out'), '-p',
                  'initial.position:=given', '-p', 'initial.heading:=given', '-p',
@@ -258,7 +260,7 @@ def test_stamps_that_were_never_set_give_way_to_the_times_of_logging(tmp_path, c
 
 
 def test_a_solution_is_not_overwritten_without_force(tmp_path, capsys):
-    """Exit code 2, the old one stays; --force replaces only a navigation."""
+    """A navigation is kept with exit code 2; --force replaces only a navigation."""
     bag = write_bag(tmp_path / 'bag', {('/imu', IMU): resting()})
     arguments = ['navigate', str(bag), '-o', str(tmp_path / 'out'), '-p',
                  'initial.position:=given', '-p', 'initial.heading:=given', '-p',

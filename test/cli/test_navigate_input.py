@@ -12,7 +12,7 @@ from support.readings.imu_records import resting
 @pytest.mark.parametrize('data', [b'', b'\0\1\0\0', b'\0\1\0\0\xff\xff\xff\x7f',
                                   b'\0\1\0\0' * 9])
 def test_transforms_that_are_none_are_one_sentence(data, tmp_path, capsys):
-    """Bytes that are not a TFMessage are reported with topic and time."""
+    """Bytes that are not a TFMessage are reported in one message with topic and time."""
     bag = tmp_path / 'bag'
     with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         for name, type_name in (('/imu', IMU), ('/tf_static', TF)):
@@ -33,14 +33,14 @@ IMU_ONLY = dict(t_ns=np.arange(1000) * 20_000_000, omega=np.zeros((1000, 3)),
 
 
 def shaken():
-    """Return IMU messages that are never at rest."""
+    """Return IMU messages of a sensor that is never at rest."""
     rng = np.random.default_rng(0)
     return imu_messages(IMU_ONLY['t_ns'], rng.standard_normal((1000, 3)),
                         IMU_ONLY['f'] + 5.0 * rng.standard_normal((1000, 3)))
 
 
 def nan_at_rest():
-    """Return messages without a finite rate."""
+    """Return messages without a finite angular rate."""
     return resting(omega=np.full((1000, 3), np.nan))
 
 
@@ -84,7 +84,7 @@ BAD = [
 @pytest.mark.parametrize('recorded, assignments, sentence', BAD, ids=range(len(BAD)))
 def test_bad_input_is_one_sentence_and_exit_code_2(recorded, assignments, sentence, tmp_path,
                                                    capsys):
-    """Nothing is written, and there is no traceback."""
+    """Invalid bags give one message and exit code 2, and nothing is written."""
     bag, out = write_bag(tmp_path / 'bag', recorded), tmp_path / 'out'
     arguments = [word for a in assignments for word in ('-p', a)]
     assert main(['navigate', str(bag), '-o', str(out), *arguments]) == 2
@@ -99,7 +99,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(recorded, assignments, senten
     (lambda p: p.mkdir(), 'is not a bag'),
     (lambda p: p.write_text('x'), 'is not a bag')])
 def test_a_path_that_is_no_bag(make, sentence, tmp_path, capsys):
-    """A missing path, an empty folder, another file."""
+    """A missing path, an empty folder and another file are refused with one message."""
     make(tmp_path / 'bag')
     assert main(['navigate', str(tmp_path / 'bag'), '-o', str(tmp_path / 'out')]) == 2
     error = capsys.readouterr().err
@@ -114,7 +114,7 @@ def test_a_path_that_is_no_bag(make, sentence, tmp_path, capsys):
     ('t_s,gx_rps,gy_rps,gz_rps,ax_mps2,ay_mps2,az_mps2\n0,1,2,3,4,5\n', '6 fields; expected 7'),
     ('', 'is empty')])
 def test_bad_csv_is_named_by_its_line(text, sentence, tmp_path, capsys):
-    """One message with file and line."""
+    """Invalid CSV gives one message with file and line."""
     path = tmp_path / 'imu.csv'
     path.write_text(text)
     assert main(['navigate', str(path), '-o', str(tmp_path / 'out')]) == 2

@@ -1,4 +1,4 @@
-"""The command navigate on odd recordings: the right value, or a parameter that accepts them."""
+"""The command navigate on odd recordings: a correct result, or the parameter that accepts them."""
 
 from dataclasses import replace
 import json
@@ -19,7 +19,7 @@ NOISE = 1e-3 * np.random.default_rng(1).standard_normal((2, 1000, 3))
 
 
 def at_rest(f=FORCE + NOISE[0], omega=NOISE[1], t_ns=T_NS, **changes):
-    """Return IMU messages at rest."""
+    """Return IMU messages of a sensor at rest."""
     return imu_messages(t_ns, omega, f, **changes)
 
 
@@ -44,7 +44,7 @@ def notes_of(summary):
     return '; '.join(summary['notes'])
 
 
-# Fixes that are not a position.
+# Fixes without a valid position.
 
 def fixes(**changes):
     """Return 20 s of fixes at 1 Hz at 55 N 37 E."""
@@ -79,7 +79,7 @@ BAD_FIXES = {
 
 @pytest.mark.parametrize('case', BAD_FIXES)
 def test_fixes_that_are_no_position_are_dropped_with_a_count_and_a_reason(case, navigated):
-    """The start is at the good fixes, to a metre."""
+    """Invalid fixes are dropped with a count and a reason; the start is that of valid ones."""
     messages, sentence = BAD_FIXES[case]
     got = navigated({('/imu', IMU): at_rest(), ('/fix', FIX): messages}, *HEADED)
     assert sentence in notes_of(got)
@@ -92,21 +92,21 @@ def test_fixes_that_are_no_position_are_dropped_with_a_count_and_a_reason(case, 
     (with_status(fixes(), range(20), -2), '/fix: 20 of 20 fixes dropped: 20 of unknown status'),
     ([], '/fix has no message')])
 def test_a_topic_without_a_usable_fix_says_why(messages, sentence, navigated):
-    """The message does not claim that there is no NavSatFix."""
+    """The message states why no fix is usable, and not that there is no NavSatFix."""
     said = navigated({('/imu', IMU): at_rest(), ('/fix', FIX): messages})
     assert f'the latitude is unknown, because {sentence}' in said
     assert 'no NavSatFix' not in said
 
 
 def test_fixes_at_zero_can_be_meant(navigated):
-    """accept.zero_fixes accepts them."""
+    """Fixes at latitude and longitude zero are dropped unless accept.zero_fixes is set."""
     bag = {('/imu', IMU): at_rest(),
            ('/fix', FIX): fixes(lat=(slice(None), 0.0), lon=(slice(None), 0.0))}
     assert 'accept.zero_fixes keeps them' in navigated(bag, *HEADED)
     assert navigated(bag, *HEADED, 'accept.zero_fixes:=true')['errors']['/fix']
 
 
-# Gravity.
+# Tests of gravity.
 
 @pytest.mark.parametrize('f, sentence', [
     (FORCE / 9.8, 'mean specific force at rest is 1.0 m/s^2; expected 9.8: is it in g? (units.'),
@@ -117,12 +117,12 @@ def test_fixes_at_zero_can_be_meant(navigated):
 @pytest.mark.parametrize('start', [HEADED, ('initial.attitude:=given', 'initial.velocity:=given'),
                                    (*HEADED, 'mounting.source:=level')])
 def test_the_mean_specific_force_at_rest_is_judged(f, sentence, start, navigated):
-    """For any start an IMU at rest must measure gravity."""
+    """For any start an IMU at rest must measure gravity; if not, the message states a cause."""
     assert sentence in navigated({('/imu', IMU): at_rest(f + 1e-4 * NOISE[0])}, *GIVEN, *start)
 
 
 def test_a_force_in_g_or_without_gravity_can_be_navigated(navigated):
-    """units.force converts it; alignment.gravity_m_s2 accepts it as it is."""
+    """units.force converts a force in g; alignment.gravity_m_s2 accepts it unchanged."""
     bag = {('/imu', IMU): at_rest(-FORCE / 9.8 + 1e-4 * NOISE[0])}
     got = navigated(bag, *GIVEN, *HEADED, 'units.force:=g')
     assert 'does the IMU measure gravity instead of specific force' in notes_of(got)
@@ -131,13 +131,17 @@ def test_a_force_in_g_or_without_gravity_can_be_navigated(navigated):
     assert abs(abs(got['figures']['roll_deg']) - 180.0) < 0.1
 
 
-# Transforms.
+# Tests of transforms.
 
 @pytest.mark.parametrize('q, said', [((0.0, 0.0, 0.0, 0.0), '(0, 0, 0, 0)'),
                                      ((np.nan, 0.0, 0.0, 1.0), '(nan, 0, 0, 1)'),
                                      ((0.0, 0.0, np.inf, 1.0), '(0, 0, inf, 1)')])
 def test_a_transform_that_is_no_rotation_is_refused_by_name(q, said, navigated):
-    """Only a transform between both frames is checked; a given mounting avoids it."""
+    """
+    A transform that is no rotation is refused by name; mounting.source given avoids it.
+
+    Only transforms between the two frames are checked.
+    """
     bag = {('/imu', IMU): at_rest(), ('/tf_static', TF): tf_messages(T_NS[0], {
         ('base_link', 'mast'): (0.0, 0.0, 0.0, 1.0), ('mast', 'imu_link'): q})}
     assert f'/tf_static from mast to imu_link has the rotation {said}, which is not a ' in \
@@ -147,7 +151,7 @@ def test_a_transform_that_is_no_rotation_is_refused_by_name(q, said, navigated):
 
 
 def test_a_transform_of_another_length_is_normalised_and_said(navigated):
-    """Half a turn about z with length 3; an invalid transform elsewhere does no harm."""
+    """A quaternion of length 3 is normalised with a note; invalid ones elsewhere do no harm."""
     got = navigated({('/imu', IMU): at_rest(), ('/tf_static', TF): tf_messages(T_NS[0], {
         ('base_link', 'imu_link'): (0.0, 0.0, 3.0, 0.0),
         ('base_link', 'camera'): (0.0, 0.0, 0.0, 0.0)})}, *GIVEN, *HEADED)
@@ -156,10 +160,10 @@ def test_a_transform_of_another_length_is_normalised_and_said(navigated):
     assert got['figures']['gravity_excess_m_s2'] == pytest.approx(-0.015, abs=1e-3)
 
 
-# Messages.
+# Tests of messages.
 
 def changed(messages, **values):
-    """Return messages with some fields changed, by their number."""
+    """Return messages with some fields changed; each value is a function of the message number."""
     return [(t, replace(content, **{name: value(k) for name, value in values.items()}))
             for k, (t, content) in enumerate(messages)]
 
@@ -168,7 +172,11 @@ MINUS_ONE = np.array([-1.0] + [0.0] * 8)
 
 
 def test_a_covariance_of_minus_one_beside_data_can_be_passed(navigated):
-    """The message says that there are numbers, and how they are accepted."""
+    """
+    Data marked as absent by a covariance of -1 are used if accept.unmeasured is set.
+
+    The message states that there are numbers, and names the parameter.
+    """
     bag = {('/imu', IMU): changed(at_rest(), linear_acceleration_covariance=lambda k: MINUS_ONE)}
     said = navigated(bag, *GIVEN, *HEADED)
     assert '1000 messages have no linear_acceleration; expected both; the fields contain ' \
@@ -178,7 +186,7 @@ def test_a_covariance_of_minus_one_beside_data_can_be_passed(navigated):
 
 
 def test_a_first_frame_that_differs_can_be_passed(navigated):
-    """The frame of most messages is the frame of the IMU."""
+    """If messages have two frames, accept.frames accepts all as the more frequent one."""
     bag = {('/imu', IMU): at_rest()[3:] + at_rest(frame='')[:3]}
     assert "'imu_link' (997 messages), '' (3 messages); expected one IMU on a topic (accept." \
         in navigated(bag, *GIVEN, *HEADED)
@@ -187,7 +195,7 @@ def test_a_first_frame_that_differs_can_be_passed(navigated):
 
 
 def test_orientations_of_another_length_can_be_taken(navigated):
-    """A norm of 1.27 is reported, and normalised on request."""
+    """A quaternion of length 1.273 is reported, and normalised if accept.orientations is set."""
     bag = {('/imu', IMU): at_rest(q=np.tile([0.0, 0.0, 0.9, 0.9], (1000, 1)))}
     start = (*GIVEN, 'initial.attitude:=imu', 'initial.velocity:=given')
     assert '1000 orientations are not rotations, the first at 1700000000.000000000 s has the ' \
@@ -197,7 +205,7 @@ def test_orientations_of_another_length_can_be_taken(navigated):
 
 
 def test_a_reading_beyond_any_sensor_is_dropped_and_said(navigated):
-    """3.2e6 m/s^2 and 2e4 rad/s, one each, are dropped and reported."""
+    """Readings of 3.2e6 m/s^2 and 2e4 rad/s are dropped and reported."""
     f, omega = FORCE.copy(), NOISE[1].copy()
     f[500, 0], omega[700, 2] = 3.2e6, -2e4
     got = navigated({('/imu', IMU): at_rest(f, omega)}, *GIVEN, *HEADED)
@@ -208,7 +216,7 @@ def test_a_reading_beyond_any_sensor_is_dropped_and_said(navigated):
 
 
 def test_readings_that_are_zero_in_turns_are_recognised(navigated):
-    """A driver that sends rate and force alternately; filled, the IMU is at rest."""
+    """Alternating zeros of rate and force are recognised; accept.zero_readings fills them."""
     f, omega = FORCE + NOISE[0], NOISE[1].copy()
     f[1::2], omega[::2] = 0.0, 0.0
     bag = {('/imu', IMU): at_rest(f, omega)}
@@ -219,10 +227,10 @@ def test_readings_that_are_zero_in_turns_are_recognised(navigated):
     assert abs(got['figures']['gravity_excess_m_s2'] + 0.015) < 1e-3
 
 
-# Stamps.
+# Tests of stamps.
 
 def test_one_stamp_in_all_messages_is_named_and_the_log_time_offered(navigated):
-    """1499 repeated stamps are not reported as 1499 out of order."""
+    """999 repeated stamps are not counted as out of order; the log time is proposed."""
     bag = {('/imu', IMU): at_rest(stamps=np.full(1000, 5))}
     said = navigated(bag, *GIVEN, *HEADED)
     assert '0 out of order, and 999 with the stamp of the one before, 0.000000005 s' in said
@@ -232,7 +240,7 @@ def test_one_stamp_in_all_messages_is_named_and_the_log_time_offered(navigated):
 
 
 def test_repeated_stamps_are_dropped_or_spread(navigated):
-    """Stamps with a resolution of 40 ms at 50 Hz."""
+    """Stamps rounded to 40 ms at 50 Hz are dropped, or spread if stamps.on_repeat is spread."""
     bag = {('/imu', IMU): at_rest(stamps=T_NS // 40_000_000 * 40_000_000)}
     got = navigated(bag, *GIVEN, *HEADED)
     assert (got['figures']['repeated'], got['figures']['out_of_order']) == (500, 0)
@@ -242,7 +250,11 @@ def test_repeated_stamps_are_dropped_or_spread(navigated):
 
 
 def test_stamps_that_go_back_say_where_and_offer_the_log_time(navigated):
-    """Late seconds: 5 samples of every second are one second back."""
+    """
+    Stamps that jump back by 1 s are reported with the sample, and the log time is proposed.
+
+    Five samples of every second have a stamp that is one second too early.
+    """
     stamps = T_NS - np.where(T_NS % 10 ** 9 < 100_000_000, 10 ** 9, 0)
     bag = {('/imu', IMU): at_rest(stamps=stamps)}
     said = navigated(bag, *GIVEN, *HEADED)
@@ -253,7 +265,7 @@ def test_stamps_that_go_back_say_where_and_offer_the_log_time(navigated):
 
 
 def test_nanoseconds_of_more_than_a_second_are_named(navigated):
-    """They are added to the seconds."""
+    """A nanosec field of 1e9 or more is added to the seconds, with a note."""
     def late(content):
         stamp = content.header.stamp
         if stamp.sec % 2 == 0:
@@ -268,7 +280,7 @@ def test_nanoseconds_of_more_than_a_second_are_named(navigated):
 
 
 def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
-    """An alignment that uses the whole record is mentioned in the refusal."""
+    """The refusal of a record that the alignment uses up lists what was found before."""
     said = navigated({('/imu', IMU): resting()}, *GIVEN, 'initial.heading:=given')
     assert 'fewer than 10 samples after the start at 19.980000000 s' in said
     assert 'Notes: 1000 samples of bag /imu in 19.980 s' in said
@@ -276,7 +288,7 @@ def test_what_was_found_on_the_way_is_said_with_a_refusal(navigated):
 
 
 def test_a_bag_of_ros_1_is_named(tmp_path, capsys):
-    """The message names ROS 1; no traceback."""
+    """A bag of ROS 1 is refused with a message that names ROS 1, without a traceback."""
     (tmp_path / 'run.bag').write_bytes(b'#ROSBAG V2.0\n' + bytes(100))
     for words in (['info'], ['navigate', '-o', str(tmp_path / 'out')]):
         assert main([words[0], str(tmp_path / 'run.bag'), *words[1:]]) == 2

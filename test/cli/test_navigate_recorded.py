@@ -1,9 +1,9 @@
 """
-The command navigate on recorded data of other people; the errors are those of such sensors.
+The command navigate on public recorded data; the errors are those of such sensors.
 
-Nothing is tuned: the parameters are mounting and frames as published with the data, and the start.
-There is no truth, so the bounds are those of free inertial navigation with the biases that the
-record itself shows; the rest is printed.
+No parameter is tuned: mounting and frames are those published with the data, and the start is
+given. There is no truth, so the bounds are those of free inertial navigation with the biases that
+the record itself shows; the rest is printed.
 """
 
 import json
@@ -49,11 +49,11 @@ def grown(t_s, bias_rad_s, tilt_rad, g=9.8):
 
 def test_husky_from_its_standstill(shared_data, tmp_path, capsys):
     """
-    It starts on the move; the only standstill of 10 s is found, and the course of the fix is used.
+    The only standstill of 10 s is found although the record starts in motion.
 
-    Odometry at the standstill: 0 m/s. Bounds: errors below those of 0.1 deg/s and 2 deg (gyro
-    noise, vibration at 30 Hz, a robot on a slope); the heading against the wheels within 20 deg
-    over 150 s.
+    The course of the fix gives the heading. Odometry at the standstill: 0 m/s. Bounds: errors
+    below those of 0.1 deg/s and 2 deg (gyro noise, vibration at 30 Hz, a robot on a slope); the
+    heading against the wheels within 20 deg over 150 s.
     """
     out = tmp_path / 'out'
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', out, *HUSKY)
@@ -86,7 +86,7 @@ def test_husky_levelled_without_a_word_on_its_mounting(shared_data, tmp_path, ca
 
 
 def test_husky_as_if_its_imu_lay_flat(shared_data, tmp_path, capsys):
-    """Without its mounting it seems to lie on its side, and a message says so."""
+    """Without its mounting the IMU seems to lie on its side, and a message states this."""
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out')
     capsys.readouterr()
     assert abs(summary['figures']['roll_deg']) > 80.0
@@ -94,7 +94,7 @@ def test_husky_as_if_its_imu_lay_flat(shared_data, tmp_path, capsys):
 
 
 def test_husky_from_the_orientation_in_its_messages(shared_data, tmp_path, capsys):
-    """A start on the move: attitude of the IMU, velocity of the wheels, position of the fix."""
+    """A start in motion uses attitude of the IMU, velocity of the wheels, position of the fix."""
     summary = navigated(shared_data / 'rosbags' / 'husky_test1_mcap', tmp_path / 'out', *HUSKY,
                         'initial.attitude:=imu', 'duration_s:=60.0')
     shown(capsys, 'husky, from the first sample', summary)
@@ -105,10 +105,11 @@ def test_husky_from_the_orientation_in_its_messages(shared_data, tmp_path, capsy
 
 def test_the_uav_on_the_ground(shared_data, tmp_path, capsys):
     """
-    90 s of the circuit flight on the ground; from 57 s on it moves as if it were carried.
+    The first 57 s of 90 s on the ground stay below a gyro drift of 0.2 deg/s and 0.5 deg of tilt.
 
-    Its course is then not its heading, and the bag cannot show this; only errors until then are
-    meaningful: below those of the gyro's warm-up, 0.2 deg/s, and 0.5 deg of tilt.
+    From 57 s on the UAV moves as if it were carried. Its course is then not its heading, and the
+    bag cannot show this, so only earlier errors are meaningful. The drift is that of the gyro's
+    warm-up.
     """
     summary = navigated(shared_data / 'rosbags' / 'umn_thor_fl75_first90s_sqlite3',
                         tmp_path / 'out')
@@ -120,8 +121,7 @@ def test_the_uav_on_the_ground(shared_data, tmp_path, capsys):
 
 def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
     """
-    Forward, right, down: gravity is on -z, and the rates are those of the attitude of the
-    reference.
+    The published axes are forward, right, down: gravity is on -z, and rates match the attitude.
 
     Correlation of each axis with the reference, by increments between its stamps: above 0.9 with
     the right sign for the road vehicle, above 0.8 for the UAV, whose filter corrects its attitude.
@@ -143,7 +143,7 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
         summed = np.cumsum(flu.omega * steps, axis=0)
         own = np.diff([np.interp(t_ns, imu.t_ns, s) for s in summed.T], axis=1).T
         for axis in range(3):
-            # The filter's heading resets on the ground are no rotation.
+            # Heading resets of the on-board filter on the ground are no rotation of the IMU.
             real = np.linalg.norm(turn, axis=1) < 0.1
             assert np.corrcoef(turn[real, axis], own[real, axis])[0, 1] > least
 
@@ -151,10 +151,11 @@ def test_the_conventions_of_the_csv_files_are_in_the_data(shared_data):
 @pytest.mark.parametrize('bias', ['keep', 'subtract'])
 def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
     """
-    Given initial values at 200 s, airborne, after the climb; errors until 320 s.
+    From 200 s to 320 s of the flight the errors stay below those of a gyro bias of 0.3 deg/s.
 
-    Bound: gyro bias of 0.3 deg/s, as at the standstill on the ground, and 2 deg of tilt (the
-    reference is an on-board estimate that is corrected at 1 Hz).
+    The start is airborne, after the climb, with given values. Bound: gyro bias of 0.3 deg/s, as at
+    the standstill on the ground, and 2 deg of tilt (the reference is an on-board estimate that is
+    corrected at 1 Hz).
     """
     flight = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
     track = csv_imu.read_reference(flight)[0]
@@ -186,9 +187,10 @@ def test_the_circuit_flight_from_the_air(bias, shared_data, tmp_path, capsys):
 
 def test_the_road_vehicle_beside_a_fibre_optic_ins(shared_data, tmp_path, capsys):
     """
-    MEMS at 100 Hz in a car, started at 11 m/s from the reference: biases 0.1 deg/s, tilt 1 deg.
+    A car with MEMS at 100 Hz, started at 11 m/s, stays within the errors of 0.1 deg/s and 1 deg.
 
-    Heading and tilt have bounds from the same bias.
+    The start is that of the reference, a fibre-optic INS. Heading and tilt are bounded by the same
+    gyro bias.
     """
     folder = shared_data / 'imu_ref'
     summary = navigated(folder / 'fogmems_imu.csv.gz', tmp_path / 'out', *FRD,
@@ -203,7 +205,7 @@ def test_the_road_vehicle_beside_a_fibre_optic_ins(shared_data, tmp_path, capsys
 
 
 def test_a_car_that_never_stops_is_refused(shared_data, tmp_path, capsys):
-    """Without a standstill one message describes the best window."""
+    """A record without a standstill is refused with one message that describes the best window."""
     folder = shared_data / 'imu_ref'
     assert main(['navigate', str(folder / 'fogmems_imu.csv.gz'), '-o', str(tmp_path / 'out'), '-p',
                  f'reference.path:={folder / "fogmems_fogins_reference.csv"}']) == 2

@@ -1,4 +1,4 @@
-"""The command line offline: outputs, exit codes, messages, and complete files only."""
+"""The offline verbs: outputs, exit codes, messages, and complete files only."""
 
 import json
 
@@ -33,7 +33,7 @@ def test_simulate_writes_a_run(tmp_path, capsys):
 
 
 def test_simulate_shows_published_figures_only_for_their_study(tmp_path, capsys):
-    """The column of the paper appears only for the hour of motion 2."""
+    """Published values are shown only for the study they belong to, the hour of motion 2."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=5.0', '-o',
                  str(tmp_path / 'run'), '--no-twin']) == 0
     assert 're-derived' not in capsys.readouterr().out
@@ -60,7 +60,7 @@ def test_notes_on_the_prediction_come_with_its_column(tmp_path, capsys):
 
 
 def test_a_run_is_never_overwritten_without_force(tmp_path, capsys):
-    """Exit code 2, the old run stays; --force replaces a run, and only a run."""
+    """An existing run is kept with exit code 2; --force replaces a run, and only a run."""
     out = tmp_path / 'run'
     arguments = ['simulate', '-p', 'duration_s:=1.0', '-o', str(out)]
     assert main(arguments) == 0
@@ -77,7 +77,7 @@ def test_a_run_is_never_overwritten_without_force(tmp_path, capsys):
 
 
 def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
-    """A failure in the middle leaves no folder that could be taken for a run."""
+    """A failure while writing leaves no folder that could be taken for a run."""
     def fail(*arguments):
         raise OSError(28, 'No space left on device')
 
@@ -100,7 +100,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
 @pytest.mark.parametrize('verb', ['simulate', 'predict'])
 def test_bad_input_is_one_sentence_and_exit_code_2(verb, arguments, sentence, tmp_path, capsys,
                                                    monkeypatch):
-    """Nothing is written, and there is no traceback."""
+    """Invalid input gives one message and exit code 2, and nothing is written."""
     monkeypatch.chdir(tmp_path)
     assert main([verb, *arguments]) == 2
     error = capsys.readouterr().err
@@ -119,7 +119,7 @@ def test_an_unknown_verb_is_exit_code_2(capsys):
 
 @pytest.mark.parametrize('verb', ['simulate', 'allan', 'demo'])
 def test_a_wrong_option_shows_the_usage_of_its_verb(verb, capsys):
-    """The usage is that of the verb, not that of the command without these options."""
+    """A wrong option shows the usage of the verb, not that of the command without verbs."""
     with pytest.raises(SystemExit) as stopped:
         main([verb, '--colour'])
     said = capsys.readouterr().err
@@ -128,7 +128,7 @@ def test_a_wrong_option_shows_the_usage_of_its_verb(verb, capsys):
 
 
 def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
-    """Cells and limits are tested in test_tuned_gyro; here their output is."""
+    """dtg-study prints both tables and saves both figures; test_tuned_gyro checks the values."""
     assert main(['dtg-study', '-o', str(tmp_path / 'study')]) == 0
     shown = capsys.readouterr().out
     for text in ('9.9777', '9.8140', '129.4 to 337.4 Hz', '9.65', '[rad/s]'):
@@ -139,7 +139,7 @@ def test_dtg_study_shows_both_tables_and_saves_both_figures(tmp_path, capsys):
 
 
 def test_dtg_report(capsys):
-    """Roots, bandwidth and steps of the gyros of the parameters."""
+    """dtg-report prints roots, bandwidth and step limits of the gyros of the parameters."""
     assert main(['dtg-report', '-p', 'gyro.dtg.errors.speed_ppm:=[100.0, 0.0]']) == 0
     text = capsys.readouterr().out
     assert 'tuned gyro tactical, closed loop, rotor at 230 Hz' in text and 'stable' in text
@@ -154,7 +154,7 @@ def test_dtg_report(capsys):
 
 
 def test_compare_orientation(capsys):
-    """One table of the three algorithms."""
+    """compare-orientation prints one table of the three algorithms."""
     assert main(['compare-orientation', *LATE_MOTION_2_WORDS, '-p',
                  'duration_s:=20.0']) == 0
     text = capsys.readouterr().out
@@ -163,7 +163,7 @@ def test_compare_orientation(capsys):
 
 
 def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):
-    """A faulty channel, lost samples, rotors without a prediction."""
+    """simulate reports a faulty gyro channel, lost samples, and a gyro without a prediction."""
     dtg = ['simulate', '--params-file', 'dtg_motion_2', '-p', 'duration_s:=20.0']
     fault = ['-p', 'gyro.dtg.fault.channel:=gyro_1_y', '-p', 'gyro.dtg.fault.bias_deg_h:=9000.0',
              '-p', 'gyro.dtg.fault.start_s:=10.0', '-p', 'sampling.drop_out_probability:=0.005']
@@ -181,7 +181,7 @@ def test_simulate_tells_of_gaps_and_of_the_parity(tmp_path, capsys):
 
 
 def test_tables_show_their_units(capsys, tmp_path):
-    """No unit is taken for markup."""
+    """Units in brackets are printed, not interpreted as markup."""
     assert main(['predict', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=10.0']) == 0
     text = ' '.join(capsys.readouterr().out.split())
     assert "psi' [rad/s]" in text and 'drift north [deg/h]' in text

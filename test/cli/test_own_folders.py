@@ -1,4 +1,4 @@
-"""Folders of results: complete or absent, one writer at a time, foreign files stay."""
+"""Folders of results are complete or absent, have one writer at a time, and keep foreign files."""
 
 import fcntl
 import os
@@ -15,7 +15,7 @@ import pytest
 from support.places import ROOT
 
 RUN = ['simulate', '-p', 'duration_s:=1.0']
-# Files that may be in a folder made by an older version, or by somebody else.
+# Files of a folder made by an older version or by another program.
 PRECIOUS = {'summary.json': '[]', 'main.c': 'int main;', 'bag_0.mcap': 'mine',
             'metadata.yaml': 'rosbag2_bagfile_information: {}', 'comparison.json': '[]',
             'allan.json': '[]', 'parameters.yaml': '', 'nav.npz': ''}
@@ -53,7 +53,7 @@ def imu_csv(path):
     ['delay-study', '-o', 'OUT', '--force'],
     ['convert', 'imu.csv', 'OUT', '--force']])
 def test_a_folder_of_others_stays(words, tmp_path, monkeypatch, capsys):
-    """For any file names in it: exit code 2, and all files stay."""
+    """A folder with files of any other name is kept with exit code 2."""
     monkeypatch.chdir(tmp_path)
     imu_csv(tmp_path / 'imu.csv')
     (tmp_path / 'OUT').mkdir()
@@ -69,7 +69,7 @@ def test_a_folder_of_others_stays(words, tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize('inner', [False, True])
 def test_a_run_with_a_file_of_somebody_stays(inner, tmp_path, capsys):
-    """A foreign file beside the files of the run, or in a folder in it."""
+    """A run with a foreign file next to its files, or in a subfolder, is kept."""
     out = tmp_path / 'run'
     assert main([*RUN, '-o', str(out)]) == 0
     mine = out / 'src' / 'main.c' if inner else out / 'main.c'
@@ -88,7 +88,7 @@ def test_a_run_with_a_file_of_somebody_stays(inner, tmp_path, capsys):
 
 
 def test_what_comes_while_it_is_computed_stays(tmp_path):
-    """A file put into the old folder in the meantime keeps the folder."""
+    """A file put into the old folder while the new run is computed keeps the folder."""
     out = tmp_path / 'out'
     with whole_folder(out) as work:
         (work / 'a').write_text('old')
@@ -120,7 +120,7 @@ def test_the_current_folder_and_the_root_are_refused(tmp_path, monkeypatch, caps
 
 
 def test_the_second_of_two_at_once_is_refused(tmp_path, capsys):
-    """It is refused before it computes anything; the first one ends normally."""
+    """A second process with the same folder is refused at its start; the first one finishes."""
     out = tmp_path / 'run'
     for force in ([], ['--force']):
         with whole_folder(out, bool(force), 'summary.json') as work:
@@ -136,7 +136,7 @@ def test_the_second_of_two_at_once_is_refused(tmp_path, capsys):
 
 
 def test_what_a_killed_process_left_is_in_nobodys_way(tmp_path):
-    """It is removed by the next run; a foreign folder of that name is not."""
+    """A temporary folder of a killed process is removed by the next run; a foreign one is not."""
     out = tmp_path / 'out'
     subprocess.run([sys.executable, '-c', KILLED, out],
                    env={**os.environ, 'PYTHONPATH': str(ROOT)})
@@ -164,7 +164,7 @@ def test_a_link_leads_to_the_folder_that_is_replaced(tmp_path):
 
 
 def test_a_marker_leads_nowhere_else(tmp_path):
-    """A marker that names files outside its folder is invalid."""
+    """A marker file that names files outside its folder is invalid."""
     with whole_folder(tmp_path / 'out') as work:
         (work / 'file').write_text('x')
     (tmp_path / 'victim').write_text('x')
@@ -177,7 +177,7 @@ def test_a_marker_leads_nowhere_else(tmp_path):
 
 
 def test_parents_that_were_made_go_again(tmp_path):
-    """A run that is refused or fails leaves no folder behind."""
+    """A run that is refused or fails removes the parent folders it made."""
     with pytest.raises(RuntimeError):
         with whole_folder(tmp_path / 'a' / 'b' / 'c'):
             raise RuntimeError
@@ -187,7 +187,11 @@ def test_parents_that_were_made_go_again(tmp_path):
 @pytest.mark.parametrize('writer', [
     lambda folder: whole_folder(folder).__enter__(), OwnFolder, BagWriter])
 def test_an_interrupt_that_another_thread_takes_leaves_nothing(writer, tmp_path, monkeypatch):
-    """As with threads of NumPy's libraries: the interrupt waits until the folder is locked."""
+    """
+    An interrupt received by another thread waits until the folder is locked, and leaves nothing.
+
+    Threads of NumPy's libraries may receive it.
+    """
     end = threading.Event()
     other = threading.Thread(target=end.wait)
     other.start()

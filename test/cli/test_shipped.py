@@ -1,4 +1,4 @@
-"""Verbs list and describe: all shipped files are listed, all parameters described."""
+"""The verbs list and describe: all shipped files are listed, all parameters described."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ def listed(*words, capsys):
 
 
 def test_every_shipped_file_is_listed_once(capsys):
-    """In a pipe with one line each, of at least some words."""
+    """Every shipped file is listed once: in a pipe with one line of at least four words."""
     rows, heads = listed(capsys=capsys)
     verbs = {name for name, _ in listing.study_verbs()}
     assert sorted(name for name, _ in rows if name not in verbs) == NAMES
@@ -33,7 +33,7 @@ def test_every_shipped_file_is_listed_once(capsys):
 
 
 def test_lists_by_kind(capsys):
-    """Each kind alone, together the same as all; motions can be simulated."""
+    """The lists of all kinds together equal the full list; motions can be simulated."""
     found = [name for kind in listing.KINDS for name, _ in listed(kind, capsys=capsys)[0]]
     assert sorted(found) == sorted(name for name, _ in listed(capsys=capsys)[0])
     motions, instruments, studies, others = (
@@ -46,7 +46,7 @@ def test_lists_by_kind(capsys):
 
 
 def test_the_verbs_that_are_studies_are_those_of_the_command():
-    """The listed studies are the verbs, by the names of their files."""
+    """The studies listed are the verbs of the package studies, by the names of their files."""
     rooms = {name for name, verb in command.VERBS.items() if '.studies.' in verb.__name__}
     assert {name for name, _ in listing.study_verbs()} == rooms
     assert all(main.HELP == words for name, words in listing.study_verbs()
@@ -54,7 +54,7 @@ def test_the_verbs_that_are_studies_are_those_of_the_command():
 
 
 def test_lines_fit_into_a_terminal():
-    """Folded at 80 columns, with aligned text."""
+    """Lines are folded at 80 columns with aligned text."""
     files = shipped_files.shipped_files()
     parts = [(shipped_files.HEADS[kind], [(file.name, file.words) for file in files[kind]])
              for kind in listing.KINDS]
@@ -66,7 +66,7 @@ def test_lines_fit_into_a_terminal():
 
 
 def test_every_parameter_is_described():
-    """Each with its default and description, for every node and verb that has it."""
+    """Every parameter is described with its default, for every node and verb that has it."""
     for reader, cls in READERS.items():
         for name, f in flatten(cls).items():
             text = '\n'.join(describe.described(name))
@@ -76,7 +76,7 @@ def test_every_parameter_is_described():
 
 
 def test_every_section_of_the_shipped_files_has_a_reader():
-    """A new study must be known by describe too."""
+    """describe knows every section and parameter of the shipped files, also of new studies."""
     for name in NAMES:
         for node, key, _ in shipped_files.shipped_file(name).values:
             assert node == '**' or key in flatten(READERS[node]), (name, node, key)
@@ -84,7 +84,7 @@ def test_every_section_of_the_shipped_files_has_a_reader():
 
 @pytest.mark.parametrize('name', NAMES)
 def test_every_shipped_file_is_described(name):
-    """Its comment, and each parameter that it sets, with its description."""
+    """The description of a shipped file has its comment and each parameter that it sets."""
     text = '\n'.join(describe.described(name))
     file = shipped_files.shipped_file(name)
     assert str(resources.config(name)) in text and all(line in text for line in file.head)
@@ -92,7 +92,7 @@ def test_every_shipped_file_is_described(name):
 
 
 def test_a_group(capsys):
-    """Unit, bounds, default, choices, its nodes, and what can be set while a node runs."""
+    """A group is described with units, bounds, defaults, nodes, and what is set at run time."""
     assert main(['describe', 'gyro.errors']) == 0
     said = capsys.readouterr().out
     assert said.startswith('gyro.errors  (imu_sensor, strapdown)\n    Errors of the gyro triad.')
@@ -109,7 +109,7 @@ def test_a_group(capsys):
     ('dtg_study', 'dtg_study', 'sweep: '), ('navigate', '', 'initial.heading: '),
     ('imu_tactical_fog', '', 'gyro.errors.turn_on_bias_sigma_deg_h: [')])
 def test_other_names(name, first, inside, capsys):
-    """Parameters, nodes, commands and files are described."""
+    """Parameters, nodes, commands and files can be described."""
     assert main(['describe', name]) == 0
     said = capsys.readouterr().out
     assert said.startswith(first) and inside in ' '.join(said.split())
@@ -117,7 +117,7 @@ def test_other_names(name, first, inside, capsys):
 
 
 def test_without_a_name_the_groups_are_described(capsys):
-    """With their nodes."""
+    """Without a name all groups are described with their nodes."""
     assert main(['describe']) == 0
     said = capsys.readouterr().out
     assert 'gyro  (imu_sensor)' in said and '\nmotion  (motion_generator, imu_sensor' in said
@@ -132,20 +132,20 @@ def test_without_a_name_the_groups_are_described(capsys):
     ('x' * 5000, '(5000 characters) is not a parameter'), ('', "'' is not a parameter"),
     ('gyro.', "the nearest known one is 'gyro'"), ('\x1b[2J', 'is not a parameter')])
 def test_unknown_names(name, sentence, capsys):
-    """One message, exit code 2."""
+    """An unknown name gives one message and exit code 2."""
     assert main(['describe', name]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1 and '\x1b' not in error
 
 
 def test_an_unknown_kind(capsys):
-    """An unknown kind gives the usage of the command."""
+    """list with an unknown kind shows the usage of the command."""
     with pytest.raises(SystemExit) as end:
         main(['list', 'motion'])
     assert end.value.code == 2 and 'motions' in capsys.readouterr().err
 
 
 def test_files_of_the_repository_are_those_that_are_found():
-    """The listing reads the same folder as simulate."""
+    """list reads the same folder as simulate."""
     assert resources.config_names() == NAMES
     assert Path(resources.config(NAMES[0])).parent == ROOT / 'config'

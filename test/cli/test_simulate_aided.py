@@ -30,7 +30,7 @@ def rows(run):
 
 
 def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
-    """Arrays, rows, figures, track, page and parameters, which give the same run again."""
+    """The run has arrays, rows, figures, track, page and parameters, which reproduce the run."""
     chosen, _, free, solution = run
     assert command(tmp_path) == 0
     shown = ' '.join(capsys.readouterr().out.split())
@@ -73,7 +73,7 @@ def test_the_command_writes_the_run(run, rows, tmp_path, capsys):
 
 
 def test_without_aided_the_run_is_as_before(run, tmp_path, capsys):
-    """The same free solution, three nodes in the parameters, and no fixes."""
+    """Without --aided: the same free solution, parameters of three nodes, no fixes."""
     arguments = [w for text in FLIGHT for w in ('-p', text)]
     assert main(['simulate', '--params-file', 'gnss_outage_flight', '--params-file', 'grade_mid',
                  *arguments, '-o', str(tmp_path / 'run')]) == 0
@@ -86,7 +86,7 @@ def test_without_aided_the_run_is_as_before(run, tmp_path, capsys):
 
 
 def test_the_rows_are_the_errors(run, rows, capsys):
-    """Each value equals one computed here in another way; NIS within chi-square (1 in 10^6)."""
+    """Each row equals a value computed independently; NIS is within chi-square (1 in 10^6)."""
     _, _, free, solution = run
     errors = solution.errors
     east, north = errors.position[:, 0], errors.position[:, 1]
@@ -112,7 +112,7 @@ def test_the_rows_are_the_errors(run, rows, capsys):
     assert mounting.true == pytest.approx(20.0, rel=1e-15)
     assert mounting.sigma == pytest.approx(
         np.degrees(solution.errors.estimates_sigma[-1, 0]) * 60.0, rel=1e-12)
-    # Five sigma of the filter.
+    # Five sigmas of the filter.
     assert abs(mounting.measured - 20.0) < 5.0 * mounting.sigma < 5.0 * 30.0
     assert 'aided scale kx' not in rows
     with capsys.disabled():
@@ -125,7 +125,7 @@ def test_the_rows_are_the_errors(run, rows, capsys):
 
 
 def test_the_figure_shows_where_fixes_are_missing():
-    """Outage and drop-outs are shaded, each in its colour; no mean is drawn through either."""
+    """Outage and drop-outs are shaded in different colours, and no mean is drawn across them."""
     chosen = settings('drop_outs.start_s:=[20.0,70.0]', 'drop_outs.end_s:=[40.0,75.0]',
                       'outages.start_s:=[30.0]', 'outages.end_s:=[60.0]')
     flight = flown(chosen)[-1]
@@ -135,7 +135,7 @@ def test_the_figure_shows_where_fixes_are_missing():
         assert panel.x_label == 'time [s]'
         spans = {mark.label: np.transpose([mark.first, mark.last]) + start_s
                  for mark in panel.marks if isinstance(mark, Stretch)}
-        # Windows of one second that overlap the drop-outs, stamped at their ends.
+        # Windows of one second, stamped at their ends, that overlap the drop-outs.
         assert np.allclose(spans['no velocity meter'], [(21.0, 41.0), (71.0, 76.0)])
         assert np.allclose(spans['no GNSS'], [(30.0, 60.0)])
         assert len({mark.colour for mark in panel.marks if isinstance(mark, Stretch)}) == 2
@@ -148,9 +148,7 @@ def test_the_figure_shows_where_fixes_are_missing():
 
 
 def test_what_is_not_known_is_not_shown(tmp_path, capsys):
-    """
-    A filter without covariance has no sigma, NIS, estimates; without GNSS there are no outages.
-    """
+    """Without covariance no sigma, NIS or estimates are shown; without GNSS no outages."""
     assert command(tmp_path, flight=('duration_s:=30.0', 'filter:=conventional')) == 0
     shown = ' '.join(capsys.readouterr().out.split())
     assert 'aided by conventional: velocity meter (surrogate), N 1000' in shown
@@ -163,7 +161,7 @@ def test_what_is_not_known_is_not_shown(tmp_path, capsys):
 
 
 def test_reasons_of_refusals_are_counted():
-    """A meter that cannot measure the speed of the flight: each fix is invalid for that reason."""
+    """Rejected fixes are counted by reason: the meter cannot measure the speed of the flight."""
     chosen = settings('limits.speed_min_m_s:=390.0', 'duration_s:=10.0')
     _, free, solution = flown(chosen)
     rows = {r.name: r for r in aided.aided_rows(chosen, solution, free.states, free.errors)}
@@ -174,7 +172,7 @@ def test_reasons_of_refusals_are_counted():
 
 
 def test_lost_samples_leave_the_instruments_alone(tmp_path, capsys):
-    """The fixes are those of a complete IMU; the navigator starts anew and logs it."""
+    """Lost IMU samples do not change the fixes; the navigator starts anew and logs it."""
     chosen = settings('duration_s:=20.0', 'attack_angle:=none')
     _, _, whole = flown(chosen)
     lost = settings('duration_s:=20.0', 'attack_angle:=none',
@@ -192,8 +190,8 @@ def test_lost_samples_leave_the_instruments_alone(tmp_path, capsys):
 
 @pytest.mark.parametrize('length', [4096, 333, 1])
 def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
-    """For any block length: a late fix of one instrument does not delay the other."""
-    # In ROS an empty list does not replace another one.
+    """For any block length a late fix of one sensor does not delay those of the other."""
+    # In ROS an empty list does not replace a list.
     flight = [text for text in FLIGHT if not text.startswith('outages.')]
     chosen = settings('duration_s:=20.0', 'window.latency_ms:=2500.0', 'gnss.latency_ms:=120.0',
                       flight=flight)
@@ -221,7 +219,7 @@ def test_fixes_of_several_latencies_come_in_the_order_of_arrival(length):
     (['initial.after_s:=20.0', 'duration_s:=10.0'], 'the run navigates for'),
     (['gnss_model.lever:=1.0'], "unknown parameter 'gnss_model.lever'")])
 def test_bad_input_is_one_sentence(assignments, sentence, tmp_path, capsys):
-    """It is refused before the run, and nothing is written."""
+    """Invalid input gives one message before the run, and nothing is written."""
     wanted = ('outages.end_s:=[300.0, 400.0]',) if 'outages.start_s:=[1.0]' in assignments else ()
     assert command(tmp_path, flight=wanted, assignments=assignments) == 2
     error = capsys.readouterr().err
@@ -249,7 +247,7 @@ def test_nodes_that_do_not_agree(node, parameters, sentence, tmp_path, capsys):
 
 
 def test_an_aided_run_is_replaced_with_force_alone(tmp_path, capsys):
-    """It is replaced with --force only, like any run."""
+    """An aided run is replaced with --force only."""
     flight = ('duration_s:=5.0',)
     assert command(tmp_path, flight=flight) == 0
     before = (tmp_path / 'run' / 'run.npz').read_bytes()
@@ -262,7 +260,7 @@ def test_an_aided_run_is_replaced_with_force_alone(tmp_path, capsys):
 
 @pytest.mark.parametrize('where', ['aiding', 'writing'])
 def test_an_interrupted_run_leaves_nothing(where, tmp_path, monkeypatch, capsys):
-    """After Ctrl-C in the navigator or while drawing, the old run stays."""
+    """Ctrl-C during navigation or drawing keeps the old run."""
     flight = ('duration_s:=5.0',)
     assert command(tmp_path, flight=flight) == 0
     before = sorted((p.name, p.read_bytes()) for p in (tmp_path / 'run').iterdir())

@@ -1,4 +1,4 @@
-"""Warnings: those about a recorded motion from every verb and node, and none of NumPy."""
+"""Warnings: every verb and node warns about a recorded motion; no warning comes from NumPy."""
 
 import warnings
 
@@ -27,7 +27,7 @@ def rounded(tmp_path):
 
 @pytest.mark.parametrize('verb', ['simulate', 'predict', 'convert'])
 def test_every_verb_says_what_is_wrong_with_a_recording(verb, rounded, tmp_path, capsys):
-    """One warning, whichever verb uses it."""
+    """Each verb that uses the recording prints one warning."""
     words = [word for a in rounded for word in ('-p', a)]
     more = {'simulate': ['-o', str(tmp_path / 'run')], 'predict': [],
             'convert': [str(tmp_path / 'rounded.csv'), str(tmp_path / 'bag')]}[verb]
@@ -38,7 +38,7 @@ def test_every_verb_says_what_is_wrong_with_a_recording(verb, rounded, tmp_path,
 
 
 def test_a_node_that_flies_a_recording_says_it(rounded):
-    """The generator logs it, and an IMU with source motion that reads the recording itself."""
+    """The generator logs the warning, as does an IMU with source motion that reads the file."""
     from ins_sim.ros.lock_step.truth_source import TruthSource
     chosen = parameter_files.read([], rounded)
     for fly in (lambda: TruthSource(chosen.motion_generator),
@@ -48,7 +48,7 @@ def test_a_node_that_flies_a_recording_says_it(rounded):
 
 
 def test_what_numpy_says_never_reaches_a_user(capsys, monkeypatch):
-    """Our messages are printed; "invalid value encountered" and the like are not."""
+    """Warnings of NumPy such as "invalid value encountered" are not printed; our messages are."""
     told = []
     with warnings.catch_warnings():
         warnings.simplefilter('always')

@@ -1,4 +1,4 @@
-"""Every command of ins_sim and every Python block of README and docs/ runs, page by page."""
+"""Every command of ins_sim and every Python block of README and docs/ is executed by page."""
 
 import doctest
 from pathlib import Path
@@ -10,35 +10,35 @@ import pytest
 from support.pages import commands, page_id, PAGES, split
 from support.places import ROOT
 
-# Verbs that simulate or predict; they are given the duration below.
+# Verbs that simulate or predict; the duration below is added to their options.
 SHORTENED = {'simulate', 'predict', 'compare-orientation', 'allan', 'compare-filters',
              'monte-carlo'}
 FEWER = {'monte-carlo': ['--runs', '2'], 'compare-filters': ['--runs', '2'],
          'allan': ['--duration', '600']}
-# Need live nodes, or take minutes whatever their flights are; tests of their own run them. Here
-# their words are read by the parser.
+# These verbs need live nodes, or take minutes whatever the flight; other tests run them. Here the
+# parser only reads their options.
 READ_ONLY = {'record', 'play', 'demo', 'loop-study', 'delay-study', 'dtg-study'}
-# Pages whose Python blocks are no programs; why.
+# Pages whose Python blocks are not programs, each with the reason.
 FRAGMENTS = {
     'docs/design/bags.md': 'shows the calls on a bag that the text supposes',
     'docs/design/recorded_truth.md': 'shows the calls with settings that the text supposes'}
-# Enough for every filter and estimate, and a second or two of computing.
+# Enough for every filter and estimate, and computed in a second or two.
 SHORT = ['-p', 'duration_s:=10.0']
 
 
 def is_command(line):
-    """Return whether a line is a command of ins_sim, and not one of its sentences."""
+    """Return whether a line is a command of ins_sim, and not one of its output lines."""
     words = line.split()
     return words[:1] == ['ins_sim'] and len(words) > 1 and words[1] in VERBS
 
 
 def stands_for_yours(words):
-    """Return whether a command has a word in capitals, in brackets or dots, in place of yours."""
+    """Return whether a command has a placeholder: a word in capitals, in brackets or with dots."""
     return any(re.fullmatch(r'[A-Z_]{3,}|\.\.\.|\[.*\]|.*:=[A-Z]{3,}', word) for word in words)
 
 
 def short(words):
-    """Return the words that make a command short."""
+    """Return the options that shorten a command."""
     verb = words[0]
     added = SHORT if verb in SHORTENED or (
         verb == 'budget' and '--require' not in words) else []
@@ -47,9 +47,9 @@ def short(words):
 
 def run_command(line, missing):
     """
-    Run a command, shortened; only read the words of one that cannot run here.
+    Run a command, shortened; if it cannot run here, only parse its options.
 
-    missing: folders that commands which are only read would have written, a set that grows.
+    missing: set of folders that parsed commands would have written; it is extended.
     """
     words = shlex.split(line)[1:]
     output = words[words.index('-o') + 1:][:1] if '-o' in words else []
@@ -66,10 +66,10 @@ def run_command(line, missing):
 
 def run_python(text, names, where, expected, capsys):
     """
-    Run a block in the names that the blocks before it made.
+    Execute a block with the names that earlier blocks defined.
 
-    What it prints is the indented block that follows it, but for lines with dots. A block with
-    prompts holds its output itself.
+    Its output must be the indented block that follows it, except for lines with dots. A block with
+    prompts contains its own output.
     """
     if text.startswith('>>> '):
         test = doctest.DocTestParser().get_doctest(text, names, where, where, 0)
@@ -87,7 +87,7 @@ def run_python(text, names, where, expected, capsys):
 
 @pytest.fixture
 def here(tmp_path, monkeypatch, request):
-    """Work in a temporary folder, which holds a recorded flight where a page names one."""
+    """Work in a temporary folder; return a function that puts a recorded flight into it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setenv('MPLBACKEND', 'Agg')
@@ -104,9 +104,9 @@ def test_examples_of_a_page(page, here, capsys):
     """
     Commands, Python blocks and parameter files of a page work in their order, in one folder.
 
-    Figures named in captions (lines between asterisks) are drawn by them. A YAML block whose
-    first line is a comment with a name is saved under that name first. A comment
-    "not run: REASON" above a fence exempts a block, whose Python must compile even so.
+    Figures named in captions (lines between asterisks) must have been drawn. A YAML block whose
+    first line is a comment with a file name is saved under that name first. A comment "not run:
+    REASON" above a fence exempts a block; if it is Python it must still compile.
     """
     text = page.read_text(encoding='utf-8')
     blocks, _ = split(text)
@@ -132,7 +132,7 @@ def test_examples_of_a_page(page, here, capsys):
 
 
 def test_pages_with_fragments_have_python():
-    """The table of exempt pages is not longer than needed."""
+    """Every page in the table of exempt pages has Python blocks."""
     for name in FRAGMENTS:
         blocks, _ = split((ROOT / name).read_text(encoding='utf-8'))
         assert any(block.language == 'python' for block in blocks), name

@@ -1,7 +1,7 @@
 """
-The examples of docs/how_to/add_motion.md and add_sensor.md are complete.
+The examples of docs/how_to/add_motion.md and add_sensor.md run and give the right values.
 
-The motion, the autopilot and the sensor of these pages run, and give the right values.
+These are the motion, the autopilot and the sensor of these pages.
 """
 
 import re
@@ -32,7 +32,7 @@ ALTIMETER = blocks('add_sensor.md')
 
 @pytest.fixture
 def example(tmp_path, monkeypatch):
-    """Return a function that saves the first block of an example and runs the second."""
+    """Return a function that saves the first block of an example and executes the second."""
     monkeypatch.syspath_prepend(tmp_path)
     # Restores the table after the test.
     monkeypatch.setitem(MOTIONS, 'circle', None)
@@ -49,20 +49,24 @@ def example(tmp_path, monkeypatch):
 
 
 def test_the_motion_of_the_page_flies_its_circle(example):
-    """Its speed is 2 pi 50 m / 60 s and its heading is along the circle."""
+    """The motion of the page has a speed of 2 pi 50 m / 60 s, and its heading along the circle."""
     truth = example(CIRCLE, 'circle.py')['run'].truth
     speed = 2.0 * np.pi * 50.0 / 60.0
-    # The radii of the Earth at the datum differ from those 50 m away by 1e-7 of themselves, and
-    # the height, left out of them, is that of the datum, below 200 m: 3e-5.
+    # The radii of the Earth at the datum differ from those 50 m away by a relative 1e-7; the
+    # neglected height, that of the datum, is below 200 m: 3e-5.
     np.testing.assert_allclose(np.linalg.norm(truth.v_n, axis=1), speed, rtol=1e-4)
     np.testing.assert_allclose(truth.v_n[0, 1], speed, rtol=1e-4)
-    # Level and turning to the left, the accelerometer to the left reads V^2 / R = 0.55 m/s^2;
-    # Coriolis' force adds at most 2 Omega V = 0.8 mm/s^2.
+    # Level and turning to the left, the lateral accelerometer reads V^2 / R = 0.55 m/s^2; the
+    # Coriolis force adds at most 2 Omega V = 0.8 mm/s^2.
     np.testing.assert_allclose(truth.f_ib_b[:, 1], speed ** 2 / 50.0, rtol=2e-3)
 
 
 def test_a_motion_of_ones_own_is_flown_and_saved_without_published_figures(example, tmp_path):
-    """Given as an object it gives the arrays of the motion in the table."""
+    """
+    A user's motion passed as an object gives the arrays of the same motion in the table.
+
+    The saved run shows no published figures.
+    """
     names = example(CIRCLE, 'circle.py')
     motion = ins_sim.open_motion(names['settings'])
     settings = ins_sim.read_settings('motion_2', {'duration_s': 60.0})
@@ -73,7 +77,7 @@ def test_a_motion_of_ones_own_is_flown_and_saved_without_published_figures(examp
 
 
 def test_the_autopilot_of_the_page_steers(example, monkeypatch):
-    """It takes the vehicle back to the leg, and overshoots by its integral."""
+    """The autopilot of the page returns the vehicle to the leg and overshoots by its integral."""
     monkeypatch.setitem(AUTOPILOTS, 'integral', None)
     steered = example(AUTOPILOT, 'integral.py')['run'].steered
     assert steered.estimates.steers.all()
@@ -83,7 +87,11 @@ def test_the_autopilot_of_the_page_steers(example, monkeypatch):
 
 
 def test_the_sensor_of_the_page_reads(example):
-    """Ten readings a second, with the offset; blocks and restarts change nothing."""
+    """
+    The sensor of the page gives ten readings a second with the offset, however blocks are cut.
+
+    A copy after a restart gives the same readings.
+    """
     names = example(ALTIMETER, 'altimeter.py')
     run, readings = names['run'], names['readings']
     assert len(readings) == 601
@@ -99,16 +107,16 @@ def test_the_sensor_of_the_page_reads(example):
 
 @pytest.mark.parametrize('cls', [Gnss, StreamImu, PacedImu, ImuWithErrors])
 def test_the_sensors_of_the_simulator_have_the_interface(cls):
-    """They are Sensors."""
+    """The sensors of the simulator have the interface Sensor."""
     assert issubclass(cls, Sensor)
 
 
 @pytest.mark.parametrize('kind', [kind for kind in MOTIONS if kind not in ('recording', 'circle')])
 def test_every_motion_of_the_table_is_a_motion(kind):
-    """Its maker returns a Motion, whose truth is finite."""
+    """For every motion of the table the maker returns a Motion whose truth is finite."""
     motion = ins_sim.open_motion(ins_sim.read_settings(
         'route_flight' if kind == 'route' else [], {'motion.kind': kind}))
     assert isinstance(motion, Motion)
-    # A guided motion is known up to where it has been steered.
+    # A guided motion is known only up to the last command.
     instant = np.array([0 if kind == 'guided' else 10 ** 9])
     assert all(np.isfinite(values).all() for values in motion.at(instant).arrays().values())

@@ -1,4 +1,4 @@
-"""The example of docs/how_to/add_filter.md is a whole filter: it runs, and it corrects."""
+"""The example of docs/how_to/add_filter.md is a complete filter, which corrects the solution."""
 
 from pathlib import Path
 import re
@@ -11,7 +11,7 @@ PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'how_to' / 'add_filter.md'
 
 @pytest.fixture
 def example(tmp_path, monkeypatch):
-    """Save and register the filter of the page as it says; return the code that flies it."""
+    """Save and register the filter as the page describes; return the code that uses it."""
     code, register, fly = re.findall(r'```python\n(.*?)```', PAGE.read_text(encoding='utf-8'),
                                      re.DOTALL)
     assert len(code.splitlines()) <= 20
@@ -25,11 +25,11 @@ def example(tmp_path, monkeypatch):
 
 def test_the_filter_of_the_page_corrects_the_solution(example):
     """
-    Its error after 60 s is less than a third of that of the free solution.
+    After 60 s the filter of the page has less than a third of the error of the free solution.
 
     The free one drifts for 60 s with the initial velocity error v = 2.3 m/s. Windows of 2 s with
-    gain 0.4 leave 2 / 0.4 = 5 s of it, a twelfth or 11 m; fixes with 0.6 m/s of noise add a
-    random walk of 7 m by axis (one standard deviation), hence a third.
+    gain 0.4 leave 2 / 0.4 = 5 s of it, a twelfth or 11 m; fixes with 0.6 m/s of noise add a random
+    walk of 7 m on each axis (one standard deviation), hence a third.
     """
     names = {}
     exec(compile(example, str(PAGE), 'exec'), names)

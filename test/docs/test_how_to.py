@@ -1,4 +1,4 @@
-"""Tables and commands of docs/how_to that are not tested elsewhere give what the pages say."""
+"""Tables and commands of docs/how_to that no other test covers give the values of the pages."""
 
 import re
 import shlex
@@ -16,20 +16,20 @@ GRADES = re.findall(
 
 
 def commands(page):
-    """Return the words of the ins_sim commands in the shell blocks of a page."""
+    """Return the arguments of the ins_sim commands in the shell blocks of a page."""
     blocks, _ = pages.split((PAGES / page).read_text(encoding='utf-8'))
     return [shlex.split(line)[1:] for block in blocks if block.language == 'sh'
             for line in pages.commands(block) if line.startswith('ins_sim ')]
 
 
 def test_every_grade_has_a_row():
-    """Six instruments have the error of an unaided INS."""
+    """The table of grades has a row for each of the six instruments."""
     assert len(GRADES) == 6
 
 
 @pytest.mark.parametrize('name, ten_minutes, hour, circle', GRADES)
 def test_errors_of_the_grades(name, ten_minutes, hour, circle):
-    """The budget on the racetrack gives the errors of the table, to its four digits."""
+    """The error budget on the racetrack gives the errors of the table to four digits."""
     budget = ins_sim.budget(ins_sim.read_settings(['racetrack', name]))
     rms = budget.rms()
     instant = int(abs(budget.t_s - 600.0).argmin())
@@ -39,7 +39,7 @@ def test_errors_of_the_grades(name, ten_minutes, hour, circle):
 
 
 def test_commands_of_the_page_on_bags(tmp_path, monkeypatch, capsys):
-    """The bench of navigate_a_bag.md aligns to 0.11 deg and drifts by 0.05 m in a minute."""
+    """The example of navigate_a_bag.md aligns to 0.11 deg and drifts by 0.05 m in a minute."""
     monkeypatch.chdir(tmp_path)
     for words in commands('navigate_a_bag.md'):
         assert main(words) == 0, words
@@ -51,7 +51,7 @@ def test_commands_of_the_page_on_bags(tmp_path, monkeypatch, capsys):
 
 
 def test_commands_of_the_page_on_delays(tmp_path, monkeypatch, capsys):
-    """The bench of estimate_delays.md gives 2.02 +- 0.10 us for a channel that is 2 us late."""
+    """The example of estimate_delays.md gives 2.02 +- 0.10 us for a channel that is 2 us late."""
     monkeypatch.chdir(tmp_path)
     for words in commands('estimate_delays.md'):
         assert main(words) == 0, words

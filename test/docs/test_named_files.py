@@ -1,4 +1,4 @@
-"""Files that the documents name are there."""
+"""Files that the documents name exist."""
 
 import re
 
@@ -6,19 +6,19 @@ import pytest
 from support.pages import PAGES
 from support.places import ROOT
 
-# A path of the repository in backticks; with a star or in capitals it stands for several.
+# A path of the repository in backticks; with a star or capitals it is a pattern.
 PATH = re.compile(r'`((?:config|docs|test|launch|tools|benchmarks|ins_sim)/[\w./-]+)`')
 LINK = re.compile(r'\]\(([\w./-]+\.md)[)#]')
-# Written by docs/_generate when the site is built, and checked there.
+# Written by docs/_generate when the site is built, and checked then.
 GENERATED = ROOT / 'docs' / 'reference' / 'generated'
 
 
 @pytest.mark.parametrize('page', PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_named_files_exist(page):
-    """Paths from the root in backticks, and links from the page."""
+    """Paths in backticks, relative to the repository, and links, relative to the page, exist."""
     text = page.read_text(encoding='utf-8')
     names = [ROOT / name for name in PATH.findall(text)]
     names += [page.parent / name for name in LINK.findall(text)]
-    # modules are named without their suffix too
+    # Modules may be named without their suffix.
     assert not [name for name in names if not name.exists() and name.parent != GENERATED
                 and not name.with_suffix('.py').exists()]

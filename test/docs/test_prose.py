@@ -1,4 +1,4 @@
-"""README is short, its links and pictures lead somewhere, and lines of prose can be read."""
+"""README is short, its links and pictures exist, and lines of prose are short."""
 
 from pathlib import Path
 import re
@@ -9,25 +9,25 @@ from support.places import ROOT
 
 TEXT = README.read_text(encoding='utf-8')
 DOCS = [page for page in PAGES if page != README]
-# Of a line in an editor, without tables, links and code.
+# Greatest length of a line, without tables, links and code.
 LONGEST = 100
 LINK = re.compile(r'(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)')
 
 
 def links(text):
-    """Yield whether each link of a page, code left out, is a picture, and its target."""
+    """Yield (is it a picture, target) for each link of a page outside code."""
     prose = re.sub(r'`[^`\n]+`', '', '\n'.join(split(text)[1]))
     for found in LINK.finditer(prose):
         yield bool(found[1]), found[3]
 
 
 def test_the_readme_has_at_most_600_words():
-    """Commands, tables and headings counted."""
+    """README has at most 600 words, including commands, tables and headings."""
     assert len(TEXT.split()) <= 600
 
 
 def test_the_readme_begins_with_make_demo_and_make_test():
-    """The two commands are there, beside how long they take."""
+    """README names make demo and make test, and how long they take."""
     assert '```sh\nmake demo\nmake test\n```' in TEXT
     assert re.search(r'`make demo` \(about [\w ]+ minutes\)', ' '.join(TEXT.split()))
     assert re.search(r'`make test` \(about [\w ]+ minutes[\w ]*\)', ' '.join(TEXT.split()))
@@ -35,9 +35,9 @@ def test_the_readme_begins_with_make_demo_and_make_test():
 
 @pytest.mark.parametrize('page', PAGES, ids=page_id)
 def test_links_lead_somewhere(page):
-    """Files, folders, pictures and anchors that a page links exist."""
+    """Files, folders, pictures and anchors to which a page links exist."""
     for is_picture, target in links(page.read_text(encoding='utf-8')):
-        # Pages of the reference that the code generates are checked where the site is built.
+        # Reference pages generated from the code are checked when the site is built.
         if re.match(r'[a-z]+:|(\.\./|\w+/)*generated/', target):
             continue
         name, _, anchor = target.partition('#')
@@ -51,7 +51,7 @@ def test_links_lead_somewhere(page):
 
 @pytest.mark.parametrize('page', PAGES, ids=page_id)
 def test_lines_of_prose_can_be_read_in_an_editor(page):
-    """At most 100 characters, but for tables, code, display formulas and targets of links."""
+    """Lines have at most 100 characters, except tables, code, formulas and link targets."""
     _, prose = split(page.read_text(encoding='utf-8'))
     wide = [line for line in prose if len(re.sub(r'\]\([^)]*\)', ']', line)) > LONGEST
             and not line.lstrip().startswith('|')]
@@ -59,7 +59,7 @@ def test_lines_of_prose_can_be_read_in_an_editor(page):
 
 
 def test_every_page_is_in_the_table_of_contents():
-    """Sphinx warns of it too; here without building the site."""
+    """Every page is in the table of contents; here without building the site."""
     listed = set()
     for index in [page for page in DOCS if page.name == 'index.md']:
         for block in re.findall(r'```\{toctree\}\n(.*?)```', index.read_text(encoding='utf-8'),

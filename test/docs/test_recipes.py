@@ -1,4 +1,4 @@
-"""The recipes: names of ours exist, names of others are theirs, launch files describe nodes."""
+"""The recipes use existing names of ins_sim and of other packages, and valid launch files."""
 
 import importlib.util
 import runpy
@@ -22,8 +22,8 @@ TOPICS = {topic.name: topic.type_name for topic in (
     *topics.DATA, *topics.AIDING, *topics.BESIDE, topics.OTHER_ODOMETRY, topics.CLOCK_TOPIC)}
 FRAMES = {Frames().names()[role] for role in ROLES}
 
-# Parameters that the nodes of others declare, robot_localization 3.6 and imu_tools 2.1 by their
-# sources. They ignore any other name in silence.
+# Parameters declared by the nodes of other packages, from the sources of robot_localization 3.6
+# and imu_tools 2.1. Those nodes silently ignore any other name.
 INPUT = {'', '_config', '_queue_size', '_differential', '_relative'}
 EKF = {'frequency', 'two_d_mode', 'publish_tf', 'map_frame', 'odom_frame', 'base_link_frame',
        'world_frame', 'sensor_timeout', 'print_diagnostics',
@@ -46,12 +46,12 @@ EXECUTABLES = {
     'imu_filter_madgwick': {'imu_filter_madgwick_node'},
     'robot_state_publisher': {'robot_state_publisher'}, 'ros_gz_bridge': {'parameter_bridge'},
     'ins_sim': {'truth_adapter', 'imu_sensor', 'strapdown'}}
-# What kind of topic robot_localization takes as an input of that name.
+# Message types of the inputs of robot_localization, by their names.
 KINDS = {'odom': topics.ODOMETRY, 'imu': topics.IMU, 'twist': topics.TWIST}
 
 
 def sections(path):
-    """Return {node: its parameters} of a parameter file."""
+    """Return {node: parameters} of a parameter file."""
     return {name.rpartition('/')[2]: section['ros__parameters']
             for name, section in yaml.safe_load(path.read_text()).items()}
 
@@ -59,7 +59,7 @@ def sections(path):
 @pytest.mark.parametrize('name, foreign', [
     ('robot_localization', ['ekf_odom', 'ekf_map', 'navsat_transform']), ('gazebo', [])])
 def test_parameters_of_ours(name, foreign):
-    """Our nodes take their sections, and of the others they say that they are not theirs."""
+    """Our nodes read their sections, and report that the other sections belong to other nodes."""
     path = RECIPES / f'{name}.yaml'
     ours = {node: ALL_NODES[node] for node in sections(path) if node not in foreign}
     with warnings.catch_warnings(record=True) as said:
@@ -70,7 +70,7 @@ def test_parameters_of_ours(name, foreign):
 
 
 def test_parameters_of_others():
-    """Every name is one that the node declares."""
+    """The parameters of other packages' nodes are names that these nodes declare."""
     seen = set()
     for path in (RECIPES / 'robot_localization.yaml', RECIPES / 'imu_tools.yaml'):
         for node, parameters in sections(path).items():
@@ -81,7 +81,11 @@ def test_parameters_of_others():
 
 
 def test_inputs_of_robot_localization():
-    """Its topics are ours, of the kinds it takes; vectors have fifteen states; frames are ours."""
+    """
+    The inputs of robot_localization are our topics with the right types, vectors and frames.
+
+    The vectors that select states have fifteen elements; the frames are those of ins_sim.
+    """
     given = sections(RECIPES / 'robot_localization.yaml')
     for node in ('ekf_odom', 'ekf_map'):
         parameters = given[node]
@@ -95,7 +99,7 @@ def test_inputs_of_robot_localization():
                 assert value in FRAMES
     for node in ('complementary_filter', 'madgwick_filter'):
         assert sections(RECIPES / 'imu_tools.yaml')[node]['fixed_frame'] in FRAMES
-    # the origin of map, where navsat_transform is to put it too
+    # The origin of map, where navsat_transform must have it too.
     settings = parameter_files.read([resources.config('racetrack')])
     datum = settings.motion_generator.datum
     assert given['navsat_transform']['datum'] == [datum.latitude_deg, datum.longitude_deg, 0.0]
@@ -103,7 +107,7 @@ def test_inputs_of_robot_localization():
 
 
 def test_the_bridge_of_gazebo():
-    """What it brings are the topics that our nodes listen to, of their types."""
+    """The Gazebo bridge publishes topics that our nodes read, with the same types."""
     for entry in yaml.safe_load((RECIPES / 'gazebo_bridge.yaml').read_text()):
         assert TOPICS[entry['ros_topic_name']] == entry['ros_type_name']
         assert entry['gz_type_name'] == 'gz.msgs.' + entry['ros_type_name'].rpartition('/')[2]
@@ -113,11 +117,11 @@ def test_the_bridge_of_gazebo():
 
 
 class Call(SimpleNamespace):
-    """What a constructor of launch was called with."""
+    """Arguments with which a constructor of launch was called."""
 
 
 def stand_in(name):
-    """Return a constructor that keeps its arguments."""
+    """Return a constructor that stores its arguments."""
     return lambda *words, **named: Call(what=name, words=words, **named)
 
 
@@ -132,7 +136,7 @@ VALUES = {'imu': 'imu_tactical_mems', 'world': 'world.sdf'}
 
 @pytest.fixture
 def described(monkeypatch):
-    """Return the function that gives the actions of a launch file, by stand-ins for launch."""
+    """Return a function that gives the actions of a launch file, made by stand-ins."""
     for module, names in MODULES.items():
         stub = ModuleType(module)
         for name in names:
@@ -154,7 +158,7 @@ def described(monkeypatch):
 
 @pytest.mark.parametrize('path', LAUNCHES, ids=lambda path: path.name)
 def test_launch_files(path, described):
-    """Executables are those of the packages; parameter files exist and name the nodes."""
+    """Executables of launch files exist in the packages; parameter files name the nodes."""
     found = described(path)
     nodes = [action for action in found if action.what == 'Node']
     assert len(nodes) >= 2
@@ -176,7 +180,7 @@ def test_launch_files(path, described):
 @pytest.mark.parametrize('path', [path for path in LAUNCHES if path.stem != 'gazebo.launch'],
                          ids=lambda path: path.name)
 def test_genuine_launch_reads_them(path):
-    """The descriptions are made of the real classes; Gazebo's needs its package."""
+    """The real classes of launch accept the descriptions; Gazebo's needs its own package."""
     from launch import LaunchDescription
     made = runpy.run_path(str(path))['generate_launch_description']()
     assert isinstance(made, LaunchDescription) and len(made.entities) >= 3
@@ -184,7 +188,7 @@ def test_genuine_launch_reads_them(path):
 
 @pytest.mark.parametrize('page', sorted(PAGES.glob('*.md')), ids=lambda page: page.name)
 def test_pages(page):
-    """Files that a page names are there, and its commands are those of the command line."""
+    """The files and commands that a page names exist."""
     text = page.read_text()
     for path in RECIPES.iterdir():
         if path.name.startswith(page.stem):

@@ -1,4 +1,4 @@
-"""The page on recordings of others: its example is read, and its parameters are there."""
+"""The page on recordings of others: its example is read, and its parameters exist."""
 
 import json
 import re
@@ -16,7 +16,7 @@ HEADER = ('Time (s),Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s),
 
 
 def test_the_example_of_the_page_reads_the_file_it_is_for(tmp_path):
-    """Deg/s and g by a map in a parameter file: at rest it measures gravity."""
+    """The example converts deg/s and g by a parameter file: at rest the IMU measures gravity."""
     parameters = re.search(r'```yaml\n(.*?)```', PAGE, re.DOTALL).group(1)
     (tmp_path / 'map.yaml').write_text(parameters)
     noise = 1e-3 * np.random.default_rng(2).standard_normal((2000, 6))
@@ -32,6 +32,6 @@ def test_the_example_of_the_page_reads_the_file_it_is_for(tmp_path):
 
 
 def test_every_parameter_of_the_page_is_one_of_navigate():
-    """None is misspelt."""
+    """Every parameter named on the page is a parameter of navigate."""
     names = set(re.findall(r'`((?:accept|stamps|units|alignment|columns)\.[a-z_0-9]+)', PAGE))
     assert len(names) > 10 and names <= set(flatten(NavigateSettings))

@@ -1,4 +1,4 @@
-"""The generators of the reference pages, beside what test_site finds in the built site."""
+"""The generators of the reference pages, tested without building the site."""
 
 import ast
 import importlib.util
@@ -23,7 +23,7 @@ def generate():
 
 
 def test_only_changed_pages_are_written_and_others_deleted(generate, tmp_path, monkeypatch):
-    """A second build leaves equal files untouched, so that Sphinx does not read them again."""
+    """A second build leaves equal pages untouched, so that Sphinx does not read them again."""
     texts = {'a.md': 'one\n', 'folder/b.md': 'two\n'}
     monkeypatch.setattr(generate, 'pages', lambda: texts)
     generate.write_pages(tmp_path)
@@ -38,7 +38,7 @@ def test_only_changed_pages_are_written_and_others_deleted(generate, tmp_path, m
 
 
 def test_plain_words_become_markdown(generate):
-    """Marks are escaped, options and dotted names are code, bars do not end a cell."""
+    """Special characters are escaped, options and names become code, bars do not end a cell."""
     text = generate.markdown.text
     assert text('a * b < c_d [x] $5 | --all') == r'a \* b \< `c_d` \[x\] \$5 \| `--all`'
     assert text('see gyro.delay_us.x, ~/outage and -p.') == \
@@ -48,7 +48,7 @@ def test_plain_words_become_markdown(generate):
 
 
 def test_ranges_are_exact(generate):
-    """A bound is written with as many digits as it needs."""
+    """A bound is written with all its digits."""
     number = generate.parameters._number
     assert [number(value) for value in (2147483647, 1e7, 0.001, 90.0)] == [
         '2147483647', '1e+07', '0.001', '90']
@@ -60,12 +60,12 @@ def test_ranges_are_exact(generate):
     ('truth_adapter', [entry.FAULT, entry.CONSUMER]), ('player', [entry.FAULT, entry.CONSUMER]),
     ('simulation', [entry.FAULT, entry.CONSUMER])])
 def test_exit_codes_of_a_node_are_those_that_it_names(name, more, generate):
-    """Beside 0 and 2 a node has the codes that its module or those of its base classes name."""
+    """Besides 0 and 2 a node has the exit codes that its module or a base class names."""
     assert generate.interfaces.node_exit_codes(name) == [entry.OK, entry.BAD_INPUT, *more]
 
 
 def test_no_exit_code_is_a_number_elsewhere():
-    """Functions of the command and of the nodes return codes by the names of ins_sim.entry."""
+    """Commands and nodes return exit codes only by their names in ins_sim.entry."""
     for folder in ('cli', 'ros'):
         for path in (ROOT / 'ins_sim' / folder).rglob('*.py'):
             tree = ast.parse(path.read_text(encoding='utf-8'))

@@ -18,7 +18,7 @@ GUIDED = {'motion.kind': 'guided', 'duration_s': 60.0,
           'motion.route.points.latitude_deg': [55.75, 55.75],
           'motion.route.points.longitude_deg': [37.62, 40.0]}
 LOCK_STEP = {'pacing.lock_step': True}
-# For each node the parameters under which it has, taken together, all that the table lists.
+# For each node sets of parameters that together give all topics and services of the table.
 RUNS = {
     'motion_generator': ({}, LOCK_STEP, {'publish_clock': True, 'tf.source': 'truth'}, GUIDED),
     'imu_sensor': ({}, {'gyro.model': 'dtg', 'output': 'integrated'},
@@ -35,12 +35,12 @@ RUNS = {
 
 
 class Found:
-    """Names and qualities of what nodes publish, subscribe to and serve."""
+    """Names and QoS of the topics and services of a node."""
 
     def __init__(self, node):
         self.publishes = {p.topic_name: p.qos_profile for p in node.publishers}
         self.subscribes = {s.topic_name: s.qos_profile for s in node.subscriptions}
-        # Those that ROS gives every node have their full names.
+        # Those that ROS gives every node have full names.
         self.services = {s.srv_name for s in node.services if s.srv_name.startswith('~/')}
 
 
@@ -71,13 +71,13 @@ def graph(ros_domain, monkeypatch, tmp_path):
 
 
 def listed(uses, always=False):
-    """Return the full names of the topics of a table, only the unconditional ones if always."""
+    """Return the full names of the topics of a table; if always, only the unconditional ones."""
     return {'/' + use.topic.name.lstrip('/') for use in uses if not (always and use.condition)}
 
 
 @pytest.mark.parametrize('name', RUNS)
 def test_the_table_is_what_the_node_has(name, graph):
-    """Over some sets of parameters a node has all topics and services of the table, no other."""
+    """Over some sets of parameters a node has exactly the topics and services of the table."""
     table, everything = INTERFACES[name], {'publishes': set(), 'subscribes': set()}
     served = set()
     for parameters in RUNS[name]:
@@ -100,7 +100,7 @@ def test_the_table_is_what_the_node_has(name, graph):
     ('motion_generator', {'publish_clock': True, 'tf.source': 'truth'}),
     ('imu_sensor', {'tf.source': 'truth'}), ('truth_adapter', {})])
 def test_quality_of_service_is_that_of_the_table(name, parameters, graph):
-    """Durability, and depths that do not follow topics.depth, are as the reference says."""
+    """Durability, and depths that do not follow topics.depth, are those of the reference."""
     known = {'/' + topic.name.lstrip('/'): topic for topic in CONTENTS}
     for full, profile in graph(name, parameters).publishes.items():
         if full in known:
@@ -111,7 +111,7 @@ def test_quality_of_service_is_that_of_the_table(name, parameters, graph):
 
 
 def test_standard_services_are_those_that_are_offered():
-    """The services of simulation_interfaces in the table are the methods that answer them."""
+    """The services of simulation_interfaces in the table are those that the node implements."""
     from ins_sim.ros.lock_step.standard_services import PACKAGE, StandardServices
     offered = {f'~/{name}' for name in vars(StandardServices) if not name.startswith('_')}
     table = INTERFACES['motion_generator'].services
@@ -119,7 +119,7 @@ def test_standard_services_are_those_that_are_offered():
 
 
 def test_every_topic_has_its_contents_and_every_node_its_interface():
-    """The tables hold each topic of messages.topics by one name, and each executable node."""
+    """The tables hold each topic of messages.topics once, and each executable node."""
     from ins_sim.ros.main import NODES
     from ins_sim.settings.by_node import ALL_NODES
     found = {one for value in vars(topics).values()

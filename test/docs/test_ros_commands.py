@@ -1,4 +1,4 @@
-"""Commands of ROS and make in README and docs/ name what exists: they cannot run without ROS."""
+"""Commands of ROS and make in README and docs/ name existing items; they are not executed."""
 
 import re
 import shlex
@@ -28,18 +28,18 @@ def lines_of(page):
 
 
 def is_own(name):
-    """Return whether a parameter file is one that the reader makes."""
+    """Return whether a parameter file is one that the reader writes."""
     return re.search(r'[$/<]|\.yaml$|^[A-Z]+$', name) is not None
 
 
 def check_file(name):
-    """Check that a parameter file is shipped, or of the reader's own."""
+    """Check that a parameter file is shipped, or written by the reader."""
     if not is_own(name):
         assert resources.parameter_file(name).is_file(), name
 
 
 def check_parameter(node, name):
-    """Check that a node has a parameter; the process of all nodes has those of each."""
+    """Check that a node has a parameter; the process of all nodes has the parameters of each."""
     nodes = ALL_NODES if node == 'simulation' else [node]
     found = any(name in flatten(ALL_NODES[one]) for one in nodes)
     assert found or is_of_ros(name), (node, name)
@@ -77,7 +77,7 @@ def check_launch(file, words):
 
 
 def check(line):
-    """Check one command; return whether it is one of those looked at here."""
+    """Check one command; return whether it is a command of ROS or make."""
     words = shlex.split(line, comments=True)
     first = words[:3]
     if first == ['ros2', 'run', 'ins_sim']:
@@ -118,7 +118,7 @@ def test_commands_of_ros_and_make(page):
     'ros2 param set /imu_sensor gyro.bias 1.0', 'ros2 topic echo /imu/data_rw',
     'ros2 service call /strapdown/rest std_srvs/srv/Trigger'])
 def test_a_wrong_name_is_found(line):
-    """The checks above can fail."""
+    """A wrong name in a command is found by the checks above."""
     with pytest.raises((AssertionError, ValueError, OSError)):
         check(line)
 

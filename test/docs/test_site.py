@@ -1,5 +1,5 @@
 """
-The site of docs/, built once for all tests here (10 to 15 s of CPU time).
+The site of docs/, built once for all tests of this file (10 to 15 s of CPU time).
 
 Links to other sites are not opened; they are listed in build/external_links.txt.
 """
@@ -32,18 +32,18 @@ pytestmark = pytest.mark.xdist_group('site')
 GENERATED = 'reference/generated'
 FRAGMENT = re.compile(r'\sid="([^"]+)"')
 LINK = re.compile(r'<(?:a|link|img|script)\s[^>]*?(?:href|src)="([^"]+)"')
-# Searches that must find something.
+# Searches that must find a page.
 SEARCHES = ('bias instability', 'lever arm', 'TF', 'Monte Carlo')
 
 
 @pytest.fixture(scope='session')
 def built(tmp_path_factory):
-    """Return the folder of the built site, and the ended process of its build."""
+    """Return the folder of the built site, and the finished process of its build."""
     folder = tmp_path_factory.mktemp('site')
-    # A copy, as rosdoc2 makes one: the build writes its reference pages into its source.
+    # A copy, as made by rosdoc2: the build writes reference pages into its source.
     shutil.copytree(ROOT / 'docs', folder / 'docs',
                     ignore=shutil.ignore_patterns('generated', '__pycache__'))
-    # The site is built without ROS, as on a machine that has none.
+    # The site is built without ROS, as on a machine without it.
     (folder / 'without').mkdir()
     (folder / 'without' / 'rclpy.py').write_text("raise RuntimeError('rclpy was imported')\n")
     path = os.pathsep.join([str(folder / 'without'), str(ROOT)])
@@ -69,7 +69,7 @@ class Tables(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
-        """Begin a row or a cell."""
+        """Start a row or a cell."""
         if tag == 'tr':
             self.rows.append([])
         elif tag == 'td':
@@ -82,7 +82,7 @@ class Tables(HTMLParser):
             self._inside = False
 
     def handle_data(self, data):
-        """Take the text of a cell."""
+        """Store the text of a cell."""
         if self._inside:
             self.rows[-1][-1] += data
 
@@ -98,12 +98,12 @@ def heading(page):
 
 
 def test_the_site_is_built_without_a_warning(built):
-    """Sphinx ends with 0 though warnings are errors, and says nothing."""
+    """Sphinx exits with 0, although warnings are errors, and prints nothing."""
     assert (built[1].returncode, built[1].stderr) == (0, '')
 
 
 def links(site):
-    """Return the broken links inside a site, as 'page: link', and its links to elsewhere."""
+    """Return the broken links inside a site, as 'page: link', and its external links."""
     pages = {path: read(path) for path in site.rglob('*.html')}
     fragments = {path: set(FRAGMENT.findall(text)) for path, text in pages.items()}
     broken, external = set(), set()
@@ -121,7 +121,7 @@ def links(site):
 
 
 def test_every_link_inside_the_site_leads_somewhere(site):
-    """The file and the fragment of each relative link exist; other links are listed."""
+    """The file and the fragment of each relative link exist; external links are listed."""
     broken, external = links(site)
     listed = ROOT / 'build' / 'external_links.txt'
     listed.parent.mkdir(exist_ok=True)
@@ -130,7 +130,7 @@ def test_every_link_inside_the_site_leads_somewhere(site):
 
 
 def test_a_broken_link_is_found(tmp_path):
-    """A missing file and a missing fragment are broken, a link elsewhere is not looked at."""
+    """A missing file and a missing fragment are broken links; external ones are not checked."""
     (tmp_path / 'a.html').write_text('<p id="here"><a class="x" href="b.html#there">')
     (tmp_path / 'b.html').write_text(
         '<a href="a.html#here"><a href="#none"><img alt="" src="c.png"><a href="https://x.y/#z">')
@@ -140,7 +140,7 @@ def test_a_broken_link_is_found(tmp_path):
 
 @pytest.mark.parametrize('name', ins_sim.__all__)
 def test_every_public_name_has_a_page(name, site):
-    """The page of a name of ins_sim.__all__ documents it, and is listed on the page of all."""
+    """Each name of ins_sim.__all__ has a page that documents it, and is listed on the overview."""
     assert f'id="ins_sim.{name}"' in read(site / GENERATED / 'python_api' / f'{name}.html')
     assert f'python_api/{name}.html"' in read(site / GENERATED / 'python_api.html')
 
@@ -153,7 +153,7 @@ def test_the_module_of_tests_has_a_page(site):
 
 @pytest.mark.parametrize('reader', READERS)
 def test_every_parameter_is_described(reader, site):
-    """The page of a node or verb has all its parameters with unit, range, default, meaning."""
+    """The page of a node or verb has every parameter with unit, range, default and meaning."""
     rows = {row[0]: row for row in Tables(read(
         site / GENERATED / 'parameters' / f'{reader}.html')).rows if len(row) == 6}
     fields = flatten(READERS[reader])
@@ -203,7 +203,7 @@ def test_every_launch_argument_is_described(site):
 
 
 def test_every_node_topic_service_and_file_has_its_entry(site):
-    """What the tables of the code hold is in the pages."""
+    """The pages contain every node, topic, service and file of the tables in the code."""
     nodes, topics, services, files = (read(site / GENERATED / f'{name}.html') for name in (
         'nodes', 'topics', 'services', 'files'))
     served = [row[:2] for row in Tables(services).rows if row]
@@ -220,7 +220,7 @@ def test_every_node_topic_service_and_file_has_its_entry(site):
 
 @pytest.mark.parametrize('phrase', SEARCHES)
 def test_search_finds(phrase, site):
-    """A page has all words of the phrase, by the index that the search of the site uses."""
+    """The search index of the site has a page with all words of each phrase."""
     from sphinx.search.en import SearchEnglish
     text = read(site / 'searchindex.js')
     index = json.loads(text[text.index('(') + 1:text.rindex(')')])

@@ -1,4 +1,4 @@
-"""The messages that docs/how_to/troubleshooting.md quotes are messages of the code."""
+"""The messages quoted in docs/how_to/troubleshooting.md are messages of the code."""
 
 import ast
 import re
@@ -12,7 +12,7 @@ GAP = '…'
 
 
 def templates():
-    """Return every string of the package, with a gap in the place of each formatted value."""
+    """Return every string of the package, with a gap in place of each formatted value."""
     found = set()
     for path in sorted((ROOT / 'ins_sim').rglob('*.py')):
         for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
@@ -28,13 +28,13 @@ TEMPLATES = templates()
 
 
 def test_the_page_quotes_messages():
-    """There are at least fifteen of them."""
+    """The page quotes at least fifteen messages."""
     assert len(QUOTES) >= 15
 
 
 @pytest.mark.parametrize('quote', QUOTES)
 def test_quoted_messages_are_those_of_the_code(quote):
-    """One string of the code holds all fixed parts of the quotation, in their order."""
+    """For each quotation one string of the code has all its fixed parts in the same order."""
     parts = [part.strip() for part in quote.split(GAP)]
     wanted = re.compile('.*'.join(re.escape(part) for part in parts), re.DOTALL)
     assert any(wanted.search(template) for template in TEMPLATES), quote

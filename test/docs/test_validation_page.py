@@ -1,5 +1,4 @@
-"""docs/explanation/validation.md is rendered from a template and figures, and from nothing
-else."""
+"""docs/explanation/validation.md is rendered from its template and recorded figures alone."""
 
 import importlib.util
 import json
@@ -30,7 +29,7 @@ def real(name):
 
 
 def test_the_page_is_its_rendering(tool):
-    """Every figure that the page shows is known, and every known one is shown."""
+    """The page equals its rendering: every figure shown is known, and every known one is shown."""
     template = real('figures/validation.md.in')
     figures = json.loads(real('figures/validation.json'))['figures']
     assert tool.names(template) == set(figures)
@@ -39,7 +38,7 @@ def test_the_page_is_its_rendering(tool):
 
 
 def test_the_tool_renders_takes_and_checks(tool, tmp_path, capsys):
-    """New figures of a run replace the old ones; a page that someone has edited is found."""
+    """New figures of a run replace older ones, and a page edited by hand is detected."""
     assert tool.main([]) == 0 and tool.PAGE.read_text() == 'a 1.00, b 3.0e-5\n'
     run = tmp_path / 'run.json'
     run.write_text(json.dumps({'made_with': {'version': '9'}, 'figures': {

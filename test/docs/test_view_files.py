@@ -1,4 +1,4 @@
-"""The files of config/view name topics, fields and frames that exist, of types that fit."""
+"""The files of config/view name existing topics, fields and frames with suitable types."""
 
 import json
 import xml.etree.ElementTree as ElementTree
@@ -18,21 +18,21 @@ TOPICS = {topic.name.lstrip('/'): topic for topic in (
     *topics.DATA, *topics.AIDING, *topics.BESIDE, *topics.GUIDANCE, topics.RUN, topics.TF,
     topics.TF_STATIC)}
 FRAMES = {Frames().names()[role] for role in ROLES}
-# Published by robot_state_publisher, which latches it.
+# Published by robot_state_publisher with transient local durability.
 DESCRIPTION = 'robot_description'
 
 
 def field_type(type_name, path):
-    """Return the type of a field of a message, such as 'float64'; KeyError for none."""
+    """Return the type of a field of a message, such as 'float64'; KeyError if there is none."""
     for name in path:
-        # a definition: constants and fields, (name, (kind, base type or element))
+        # Layout of a definition: constants and fields, (name, (kind, base type or element)).
         fields = dict(STORE.fielddefs[type_name][1])
         _, type_name = fields[name]
     return type_name[0] if isinstance(type_name, tuple) else type_name
 
 
 def displays(config):
-    """Return the displays of RViz, those of groups as well."""
+    """Yield the displays of RViz, including those inside groups."""
     for display in config['Displays']:
         yield display
         if 'Displays' in display:
@@ -40,7 +40,7 @@ def displays(config):
 
 
 def test_rviz():
-    """Frames are frames of ours, topics are Odometry, and no subscription misses its publisher."""
+    """In RViz frames are those of ins_sim, topics are Odometry, and QoS matches the publishers."""
     manager = yaml.safe_load((VIEW / 'ins_sim.rviz').read_text())['Visualization Manager']
     views = manager['Views']
     assert manager['Global Options']['Fixed Frame'] == 'map'
@@ -65,7 +65,7 @@ def test_rviz():
 
 
 def leaves(layout):
-    """Return the panels of a Foxglove layout."""
+    """Return the leaf panels of a Foxglove layout."""
     if isinstance(layout, str):
         return [layout]
     assert layout['direction'] in ('row', 'column') and 0 < layout['splitPercentage'] < 100
@@ -73,7 +73,7 @@ def leaves(layout):
 
 
 def check_3d(panel):
-    """Odometry and the description; frames of ours."""
+    """Check a 3D panel: Odometry, the robot description, and frames of ins_sim."""
     frames = [panel['followTf'], panel['fixedFrame'],
               *(layer['frameId'] for layer in panel['layers'].values()),
               *(name.removeprefix('frame:') for name in panel['transforms'])]
@@ -83,7 +83,7 @@ def check_3d(panel):
 
 
 def check_plot(panel):
-    """Numbers of messages with a header, whose stamp is the abscissa."""
+    """Check a plot: numeric fields of messages with a header, whose stamp is the abscissa."""
     assert panel['paths']
     for series in panel['paths']:
         topic, *path = series['value'].lstrip('/').split('.')
@@ -94,19 +94,19 @@ def check_plot(panel):
 
 
 def check_map(panel):
-    """Topics of positions."""
+    """Check a map panel: topics of positions."""
     assert panel['followTopic'] in panel['topicColors']
     for name in panel['topicColors']:
         assert TOPICS[name[1:]].type_name == topics.FIX
 
 
 def check_diagnostics(panel):
-    """What the nodes report of themselves."""
+    """Check the panel of diagnostics."""
     assert panel['topicToRender'] == '/diagnostics'
 
 
 def check_raw(panel):
-    """A topic of ours."""
+    """Check a raw message panel: a topic of ins_sim."""
     assert panel['topicPath'][1:] in TOPICS
 
 
@@ -115,7 +115,7 @@ PANELS = {'3D': check_3d, 'Plot': check_plot, 'map': check_map,
 
 
 def test_foxglove():
-    """Every panel stands in the layout once, and is of a known kind."""
+    """Every Foxglove panel is in the layout once and has a known type."""
     content = json.loads((VIEW / 'foxglove.json').read_text())
     assert sorted(leaves(content['layout'])) == sorted(content['configById'])
     for name, panel in content['configById'].items():
@@ -123,7 +123,7 @@ def test_foxglove():
 
 
 def check_areas(node):
-    """Sizes and counts of the splitters of PlotJuggler are those of their children."""
+    """Check that each splitter of PlotJuggler has as many sizes as children."""
     for splitter in node.iter('DockSplitter'):
         sizes = [float(size) for size in splitter.get('sizes').split(';')]
         assert len(sizes) == int(splitter.get('count')) == len(splitter)
@@ -131,7 +131,7 @@ def check_areas(node):
 
 
 def test_plotjuggler():
-    """Curves are numbers of topics that it subscribes to, and reads of bags."""
+    """Curves of PlotJuggler are numeric fields of topics it subscribes to and reads from bags."""
     root = ElementTree.parse(VIEW / 'plotjuggler.xml').getroot()
     check_areas(root)
     tabs = root.findall('tabbed_widget/Tab')
@@ -151,14 +151,14 @@ def test_plotjuggler():
                               name.removeprefix(f'/{topic}/').split('/')) == 'float64'
             used.add(f'/{topic}')
     assert all(set(names) == used for names in chosen)
-    # an abscissa and an ordinate make an XY plot, and the other way round
+    # An XY plot has an abscissa and an ordinate, and other plots have neither.
     for plot in plots:
         assert {bool(curve.get('curve_x')) for curve in plot.iter('curve')} == {
             plot.get('mode') == 'XYPlot'}
 
 
 def test_urdf():
-    """Links are our frames on the vehicle, where the nodes place them by default."""
+    """The links of the URDF are frames on the vehicle, at the default positions of the nodes."""
     root = ElementTree.parse(VIEW / 'vehicle.urdf').getroot()
     links = {link.get('name') for link in root.iter('link')}
     assert links == FRAMES - {'map', 'odom'}
@@ -182,6 +182,6 @@ def test_urdf():
 @pytest.mark.parametrize('name', ['ins_sim.rviz', 'foxglove.json', 'plotjuggler.xml',
                                   'vehicle.urdf'])
 def test_the_page_says_how_to_open_it(name):
-    """docs/how_to/viewing.md names each file, and there are no others."""
+    """docs/how_to/viewing.md names each file of config/view, and there are no others."""
     assert name in (ROOT / 'docs' / 'how_to' / 'viewing.md').read_text()
     assert len([*VIEW.iterdir()]) == 4

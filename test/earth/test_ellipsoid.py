@@ -9,7 +9,11 @@ from ins_sim.core.earth import ellipsoid
 
 
 def test_normal_gravity_and_radii():
-    """WGS-84: equator 9.7803253359, pole 9.8321849379, 45 deg 9.8061977695 m/s^2 (TR8350.2)."""
+    """
+    WGS-84 gravity: equator 9.7803253359, 45 deg 9.8061977695, pole 9.8321849379 m/s^2.
+
+    Source: TR8350.2.
+    """
     assert ellipsoid.gravity(0.0, 0.0) == 9.7803253359
     assert ellipsoid.gravity(1.0, 0.0) == pytest.approx(9.8321849379, abs=2e-10)
     assert ellipsoid.gravity(math.sqrt(0.5), 0.0) == pytest.approx(9.8061977695, abs=2e-9)
@@ -20,7 +24,7 @@ def test_normal_gravity_and_radii():
 
 @given(st.floats(-89.9, 89.9), st.floats(-180, 180), st.floats(-1e4, 1e5))
 def test_geodetic_inverts_ecef(lat, lon, height):
-    """Round trip to a nanometre in height and 1e-15 rad, from -10 km to 100 km."""
+    """Geodetic to ECEF and back errs by 1 nm in height and 1e-15 rad, from -10 km to 100 km."""
     a, b = math.radians(lat), math.radians(lon)
     x = ellipsoid.ecef(math.sin(a), math.cos(a), math.sin(b), math.cos(b), height)
     back = ellipsoid.geodetic(*x)

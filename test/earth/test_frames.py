@@ -1,4 +1,4 @@
-"""The map frame, a plane tangent at the datum, and the conversion back."""
+"""The map frame, a plane tangent at the datum, and the conversion to geodetic and back."""
 
 import math
 
@@ -18,7 +18,7 @@ VECTORS = st.tuples(*[st.floats(-3.0, 3.0)] * 3)
 @given(st.floats(-80, 80), st.floats(-180, 180), st.floats(-2, 2), st.floats(-2, 2), VECTORS)
 @hypothesis_settings(deadline=None)
 def test_map_frame_round_trip(lat, lon, d_lat, d_lon, phi):
-    """Pose in map and back, up to hundreds of kilometres from the datum."""
+    """A pose converted to map and back is recovered up to hundreds of kilometres away."""
     frame = MapFrame(Datum(lat, lon, 100.0), True)
     here = (math.radians(lat + d_lat), math.radians(lon + d_lon), 5000.0, (10.0, 20.0, 3.0),
             quaternion.exponential(phi))
@@ -34,7 +34,7 @@ def test_map_frame_round_trip(lat, lon, d_lat, d_lon, phi):
 
 
 def test_map_is_the_tangent_plane_at_the_datum():
-    """East and north are in the plane, the origin is the datum, the ground curves away below."""
+    """The origin of map is the datum, east and north are in the plane, the ground is below."""
     frame = MapFrame(Datum(55.0, 37.0, 0.0), True)
     level = quaternion.IDENTITY
     lat, lon = math.radians(55.0), math.radians(37.0)

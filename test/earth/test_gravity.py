@@ -1,4 +1,4 @@
-"""Normal gravity at height against the closed form for the level ellipsoid."""
+"""Normal gravity at height compared with the closed form for the level ellipsoid."""
 
 import math
 
@@ -11,8 +11,9 @@ from ins_sim.core.earth import ellipsoid
 GM, SPIN = 3.986004418e14, 7.292115e-5
 A, B = 6378137.0, 6356752.3142
 MICRO_G = 9.80665e-6
-# Largest error over the latitudes, ug. According to the documentation free air is off by 14 at 10
-# km, 183 at 50 km and 2 % at 500 km; the second order leaves the third-order term, 4 (h / a)^3.
+# Greatest error over the latitudes, ug. According to the documentation the free-air formula errs
+# by 14 at 10 km, 183 at 50 km and 2 % at 500 km; the second-order formula by its third-order term,
+# 4 (h / a)^3.
 EXPECTED = {10e3: (14.0, 0.1), 50e3: (183.0, 4.0), 500e3: (2e4, 2200.0)}
 
 
@@ -45,7 +46,7 @@ def closed_form(sin_lat, height):
 
 
 def off(height, model):
-    """Return the largest error of a formula over the latitudes, ug."""
+    """Return the greatest error of a formula over the latitudes, ug."""
     terms = ellipsoid.GRAVITY_TERMS[model]
     return max(abs(ellipsoid.gravity(s, height, terms) - closed_form(s, height))
                for s in np.sin(np.radians(np.arange(0.0, 90.0, 5.0)))) / MICRO_G
@@ -59,7 +60,7 @@ def test_both_are_exact_on_the_ellipsoid():
 
 @pytest.mark.parametrize('height', EXPECTED)
 def test_gravity_at_height(height):
-    """Free air errs as documented, the second-order formula by the third-order term."""
+    """The free-air formula errs as documented, the second-order one by its third-order term."""
     free, second = (off(height, model) for model in ('free_air', 'second_order'))
     print(f'\n{height:g} m: free air {free:.4g} ug, second order {second:.4g} ug')
     expected, bound = EXPECTED[height]
@@ -73,7 +74,7 @@ HIGH = {'motion.kind': 'racetrack', 'datum.latitude_deg': 55.0, 'datum.longitude
 
 @pytest.mark.parametrize('kind', ['racetrack', 'two_axis'])
 def test_truth_and_navigation_have_the_same_gravity(kind):
-    """A run closes with either formula, but not with different ones in truth and INS."""
+    """A run closes with either gravity formula, but not if truth and INS use different ones."""
     values = {**HIGH, 'motion.kind': kind, 'datum.height_m': 400e3 if kind == 'two_axis' else 0.0}
     found = {model: np.abs(study({**values, 'earth.gravity': model}, False)[0].position).max()
              for model in ('free_air', 'second_order')}
@@ -81,7 +82,11 @@ def test_truth_and_navigation_have_the_same_gravity(kind):
 
 
 def test_gravity_that_differs_makes_the_solution_fall():
-    """At 400 km the formulas differ by 1 % of g; half of it times t^2 is 0.05 t^2 m."""
+    """
+    At 400 km the formulas differ by 1 % of g, and the height errs by half of this times t^2.
+
+    This is 0.05 t^2 m.
+    """
     from dataclasses import replace
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.io.motion import read_motion
@@ -98,7 +103,7 @@ def test_gravity_that_differs_makes_the_solution_fall():
 
 @pytest.mark.slow
 def test_the_second_order_compiled_gives_the_same_bits(monkeypatch):
-    """The loops give the same bits in plain Python and compiled from the first sample on."""
+    """The second-order formula has the same bits in plain Python and compiled."""
     from support.studies import run_offline
     from ins_sim.core.numerics import compilation
     chosen = settings({**HIGH, 'earth.gravity': 'second_order', 'duration_s': 20.0})

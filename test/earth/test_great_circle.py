@@ -1,5 +1,5 @@
 """
-Orthodromic coordinates: round trip, against an independent library, and the sign of Z.
+Orthodromic coordinates: round trip, comparison with an independent library, and sign of Z.
 
 Rounding: the last digit of a latitude or longitude near 180 deg is 2^-52 rad, 1.4e-9 m; a few of
 them add up to the bounds of 1e-8 m.
@@ -26,7 +26,7 @@ def apart(p, q):
 
 
 def a_leg(lat1, lon1, lat2, lon2):
-    """Return a Leg if the points have a well-defined one."""
+    """Return a Leg, or skip the example if the points do not define one well."""
     u, v = unit_vector(lat1, lon1), unit_vector(lat2, lon2)
     assume(1e-3 < math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(u, v))))) < 3.0)
     return Leg(lat1, lon1, lat2, lon2)
@@ -40,7 +40,7 @@ def test_there_and_back(lat1, lon1, lat2, lon2, lat, lon):
 
 
 def test_the_worst_of_many_there_and_back():
-    """A million points on two hundred legs, from everywhere on Earth to the poles of the leg."""
+    """A million points on two hundred legs, up to the poles of the leg, are recovered."""
     rng = np.random.default_rng(1)
     worst = far = 0.0
     for _ in range(200):
@@ -59,7 +59,11 @@ def test_the_worst_of_many_there_and_back():
 
 
 def test_lengths_and_courses_of_geographiclib():
-    """C. Karney's inverse problem, on the sphere with geocentric latitudes, gives the same."""
+    """
+    Lengths and courses agree with GeographicLib (Karney's inverse problem on the sphere).
+
+    The sphere has geocentric latitudes.
+    """
     geodesic = pytest.importorskip('geographiclib.geodesic').Geodesic(R0, 0.0)
     rng = np.random.default_rng(2)
     worst = np.zeros(4)
@@ -140,7 +144,7 @@ def test_legs_change_at_the_bisector():
 
 
 def test_a_route_that_crosses_itself_keeps_its_order():
-    """Three sides of a square and across the first: legs only go forwards."""
+    """On a square route that crosses its first side the current leg never goes back."""
     lat, lon = [0.0, 0.0, 0.02, 0.02, -0.02], [-0.02, 0.02, 0.02, 0.0, 0.0]
     route = GreatCircleRoute(lat, lon)
     way = [leg.from_xz(np.linspace(0.01 * leg.length, 0.99 * leg.length, 99), np.zeros(99))
@@ -167,7 +171,7 @@ BAD = [((55.0,), (37.0,), 'the route has 1 turning points; expected two or more'
 
 @pytest.mark.parametrize('lat, lon, sentence', BAD)
 def test_bad_points(lat, lon, sentence):
-    """One sentence names the points and what was expected."""
+    """Points without a leg give one message with the points and what is expected."""
     with pytest.raises(ValueError) as error:
         GreatCircleRoute.of_points(TurningPoints(lat, lon))
     assert str(error.value).startswith('motion.route.points: ')

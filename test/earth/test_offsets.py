@@ -10,7 +10,7 @@ PLACE = (math.radians(55.0), math.radians(179.99999), 300.0)
 
 
 def test_offset_is_the_inverse_of_moved():
-    """They are inverse to 1e-9 m, the rounding of an angle, also across a whole turn."""
+    """``offset`` and ``moved`` are inverse to 1e-9 m, the rounding of an angle, for any angle."""
     enu = (12.0, -30.0, 4.0)
     lat, lon, height = ellipsoid.moved(*PLACE, enu)
     for turns in (-1, 0, 1):
@@ -29,12 +29,12 @@ def test_moved_is_the_offset_between_cartesian_points():
 
 
 def test_moved_takes_arrays_with_the_bits_of_floats():
-    """An array of offsets gives the results of its elements."""
+    """``moved`` of an array of offsets has the bits of its elements."""
     enu = np.array([[1.0, -200.0, 3.0], [1e-3, 5.0, -7.0]])
     places = np.stack(ellipsoid.moved(*PLACE, enu.T), axis=-1)
     assert places.tolist() == [list(ellipsoid.moved(*PLACE, one)) for one in enu.tolist()]
 
 
 def test_rotation_rate():
-    """The rate is that of WGS-84, or zero."""
+    """The rotation rate is that of WGS-84, or zero for a non-rotating Earth."""
     assert (ellipsoid.rotation_rate(True), ellipsoid.rotation_rate(False)) == (7.292115e-5, 0.0)

@@ -27,11 +27,11 @@ def bounds(steps, length_s):
     """
     Return bounds for the difference of two runs due to rounding: position, m, and drift, rad/s.
 
-    The quaternions of a sample round by u = 2^-53 a component, which rotates by 2 u; for both runs
-    and the step this is less than 8 u a sample, a random walk of W = 8 u sqrt(N). The slope of a
-    signal within W is below 3 W / T, and a tilt of W moves the position by at most g W T^2 / 2.
-    The latitude of either strapdown rounds by 2 u at every step: four standard deviations of that
-    walk.
+    The quaternions of a sample round by u = 2^-53 in each component, which rotates by 2 u; for
+    both runs and the step this is less than 8 u in each sample, a random walk of W = 8 u sqrt(N).
+    The slope of a signal within W is below 3 W / T, and a tilt of W moves the position by at most
+    g W T^2 / 2. The latitude of either strapdown rounds by 2 u at every step: four standard
+    deviations of that walk.
     """
     walk = 8.0 * 2.0 ** -53 * math.sqrt(steps)
     place = 4.0 * math.sqrt(2.0 * steps / 12.0) * 2.0 ** -53 * 6.4e6
@@ -41,10 +41,10 @@ def bounds(steps, length_s):
 @pytest.mark.parametrize('name', STUDIES)
 def test_the_run_on_the_bag_closes_to_the_original_run(name, tmp_path):
     """
-    The errors of a run with delays agree with those on the truth of 100 Hz re-read from a bag.
+    A run with delays has the same errors on the original motion and on its truth in a bag.
 
-    The attitude at a sample minus the delay tau errs by tau^2 h^2 / 24 of its fourth derivative,
-    at most 2e-14 rad here: the rest is rounding (``bounds``).
+    The bag has 100 Hz. The attitude at a sample minus the delay tau errs by tau^2 h^2 / 24 of its
+    fourth derivative, at most 2e-14 rad here: the rest is rounding (``bounds``).
     """
     values, length_s = STUDIES[name], 300.0
     original = settings(values, start_s=PAD_S, duration_s=length_s)
@@ -69,11 +69,12 @@ def test_the_run_on_the_bag_closes_to_the_original_run(name, tmp_path):
 @pytest.mark.parametrize('rate_hz', (10.0, 20.0))
 def test_between_the_samples_the_attitude_errs_by_the_fourth_order(rate_hz, tmp_path):
     """
-    Cubic Hermite: h^4 / 384 of the fourth derivative of the rotation vector, aggressive flight.
+    Between samples the attitude errs by h^4 / 384 of the fourth derivative (cubic Hermite).
 
-    Its components are those of the angles, 25, 6 and 5 deg at 1/7, 1/5 and 1/6 Hz, and of the
-    turns of the path; twice their sum covers the products of the angles. The rotation spline
-    through attitudes alone has the same order, and end effects.
+    On the aggressive flight the components of the rotation vector are those of the angles, 25, 6
+    and 5 deg at 1/7, 1/5 and 1/6 Hz, and of the turns of the path; twice their sum covers the
+    products of the angles. The rotation spline through attitudes alone has the same order, and end
+    effects.
     """
     values = {'motion.kind': 'aggressive'}
     motion = record(tmp_path / 'bag', values, 60.0, rate_hz)
@@ -95,7 +96,7 @@ def test_between_the_samples_the_attitude_errs_by_the_fourth_order(rate_hz, tmp_
 
 
 def test_what_was_recorded_comes_out_at_its_stamps(tmp_path):
-    """At the samples values agree to the rounding of degrees, quaternions, and sums of 1e-16."""
+    """At the samples values agree to the rounding of degrees, quaternions, and sums: 1e-16."""
     values = STUDIES['aggressive']
     motion = record(tmp_path / 'bag', values, 60.0)
     again = read_motion(recorded(tmp_path / 'bag', values).motion_generator)
@@ -109,7 +110,7 @@ def test_what_was_recorded_comes_out_at_its_stamps(tmp_path):
 
 @pytest.mark.parametrize('output', ('rotation_vector', 'integrated'))
 def test_a_paced_imu_senses_the_bag(output, tmp_path):
-    """With source motion the readings of the node are those of the offline run, to the bit."""
+    """With source motion the node reads the bag with the bits of the offline run."""
     values = {**STUDIES['aggressive'], 'output': output, 'input': output}
     record(tmp_path / 'bag', values, 16.0)
     chosen = recorded(tmp_path / 'bag', values, duration_s=5.0)
@@ -126,7 +127,7 @@ def test_a_paced_imu_senses_the_bag(output, tmp_path):
 
 
 def test_odometry_alone_needs_the_datum(tmp_path):
-    """An Odometry by name, such as that of another simulator, gives the same motion to 1e-9 m."""
+    """An Odometry topic given by name, as of another simulator, gives the motion to 1e-9 m."""
     values = STUDIES['aggressive']
     motion = record(tmp_path / 'bag', values, 30.0, only=(topics.TRUTH_ODOMETRY,),
                     prefix='/robot/ground_')
@@ -134,13 +135,13 @@ def test_odometry_alone_needs_the_datum(tmp_path):
         'motion.recording.topic': 'robot/ground_truth/odometry'})
     t_ns = np.arange(0, 24 * SECOND, SECOND // 7)
     x, y = read_motion(chosen.motion_generator).at(t_ns), motion.at(t_ns + 3 * SECOND)
-    # 1e-9 m in 6.4e6 m.
+    # 1e-9 m relative to 6.4e6 m.
     assert np.abs(x.lat - y.lat).max() < 1e-15 and np.abs(x.height - y.height).max() < 1e-8
     assert np.abs(x.q_nb - y.q_nb).max() < 1e-10
 
 
 def test_a_namespace_and_a_file_of_a_bag(tmp_path):
-    """The only topic that ends in truth/odometry is found; with two, one must be given."""
+    """The only topic that ends in truth/odometry is used; if there are two, one must be given."""
     record(tmp_path / 'bag', MOTION_2, 10.0, prefix='/left/')
     chosen = recorded(tmp_path / 'bag' / 'bag_0.mcap', MOTION_2)
     assert read_motion(chosen.motion_generator).end_s == pytest.approx(4.0)
@@ -149,7 +150,7 @@ def test_a_namespace_and_a_file_of_a_bag(tmp_path):
 @pytest.mark.live
 def test_nodes_play_and_sense_the_bag(ros_domain, tmp_path):
     """
-    The generator plays it and the IMU evaluates it (source motion), in lock-step.
+    Live, the generator plays the bag and the IMU with source motion evaluates it, in lock-step.
 
     The bound is that of the offline comparison.
     """
@@ -165,7 +166,7 @@ def test_nodes_play_and_sense_the_bag(ros_domain, tmp_path):
     told_s = []
     with Session(chosen, tmp_path, tmp_path / 'bag', 'truth_bag') as session:
         session.run(told_s.append)
-    # Motion time of the run, for any epoch of its stamps.
+    # Motion time of the run, whatever the epoch of the stamps.
     assert told_s == sorted(told_s) and 0.0 < told_s[-1] <= values['duration_s']
     live = read_errors(tmp_path / 'bag', 'truth_bag')
     off = np.abs(live.position - offline.position).max()

@@ -1,4 +1,4 @@
-"""Bags that cannot be a motion are refused with one message."""
+"""Bags that do not hold a valid motion are refused with one message."""
 
 import numpy as np
 import pytest
@@ -14,14 +14,14 @@ SECOND = 1_000_000_000
 
 
 def two_namespaces(path):
-    """Write a bag with two truths."""
+    """Write a bag with the truth in two namespaces."""
     with BagWriter(path) as bag:
         for name in ('/left/truth/odometry', '/right/truth/odometry'):
             bag.add_topic(name, topics.ODOMETRY)
 
 
 def changed(function, only=topics.TRUTH, length_s=10.0):
-    """Return a writer of a bag with a changed window."""
+    """Return a function that writes a bag whose data were changed by a function."""
     return lambda path: record(path, {'motion.kind': 'sinusoids'}, length_s, only=only,
                                change=function)
 
@@ -32,7 +32,7 @@ def gap(window):
 
 
 def backwards(path):
-    """Write 5 s of truth, and then, as after a reset, from 3 s on again."""
+    """Write 5 s of truth, then the truth from 3 s on again, as after a reset."""
     def write(window):
         with BagWriter(path) as bag:
             log_ns = np.arange(1201) * (SECOND // 100)
@@ -70,13 +70,13 @@ def other_stamps(window):
 
 
 def wrong_type(path):
-    """Write an Imu with the name truth/odometry."""
+    """Write a bag with an Imu topic named truth/odometry."""
     with BagWriter(path) as bag:
         bag.add_topic('truth/odometry', topics.IMU)
 
 
 def wrong_fix(path):
-    """Write a truth with a string in place of the fix."""
+    """Write a bag of truth whose fix is a topic of strings."""
     with BagWriter(path) as bag:
         for topic in (topics.TRUTH_ODOMETRY, topics.TRUTH_ATTITUDE):
             bag.add_topic(topic.name, topic.type_name)
@@ -106,7 +106,7 @@ def wrong_fix(path):
     (lambda path: path.mkdir(), [], 'is not a bag'),
 ])
 def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path, capsys):
-    """A bag without a valid motion gives exit code 2; nothing is written."""
+    """A bag without a valid motion gives one message and exit code 2, and nothing is written."""
     write(tmp_path / 'bag')
     words = [word for a in ['motion.kind:=recording', f'motion.recording.path:={tmp_path}/bag',
                             'duration_s:=1.0', *more] for word in ('-p', a)]
@@ -117,9 +117,7 @@ def test_a_bag_that_is_no_motion_is_one_sentence(write, more, sentence, tmp_path
 
 
 def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
-    """
-    Samples missing in a topic are left out: one is no gap, a second is; on_gap cut continues.
-    """
+    """Samples that one topic lacks are left out; a lack of 0.6 s is a gap (on_gap cut)."""
     def lose(window):
         window[topics.TRUTH_FIX] = [np.delete(x, slice(900, 960), axis=0)
                                     for x in window[topics.TRUTH_FIX]]
@@ -128,13 +126,13 @@ def test_lost_samples_of_one_topic_are_a_gap(tmp_path):
     record(tmp_path / 'bag', MOTION_2, 30.0, change=lose)
     chosen = recorded(tmp_path / 'bag', MOTION_2, **{'motion.recording.on_gap': 'cut'})
     motion = read_motion(chosen.motion_generator)
-    # The first stamp of all three is 0.02 s, the last before the gap 8.99 s.
+    # The first stamp that all three topics have is 0.02 s, the last before the gap 8.99 s.
     assert motion.zero_ns == 3_020_000_000 and motion.end_s == pytest.approx(8.99 - 3.0 - 3.02)
     assert 'gaps' in motion.warnings[0]
 
 
 def test_a_topic_without_a_bag_is_refused(tmp_path):
-    """motion.recording.topic with a CSV file is refused."""
+    """motion.recording.topic given for a CSV file is refused."""
     chosen = recorded(tmp_path / 'x.csv', MOTION_2, **{'motion.recording.topic': 'odom'})
     with pytest.raises(ValueError, match="motion.recording.topic is 'odom', but .* is not a bag"):
         read_motion(chosen.motion_generator)

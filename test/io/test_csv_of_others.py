@@ -27,13 +27,13 @@ SECONDS = [f'{t // 10 ** 9}.{t % 10 ** 9:09d}' for t in T_NS.tolist()]
 
 
 def table(header, times, values=VALUES, mark=','):
-    """Return the text of a file."""
+    """Return the text of a CSV file."""
     return '\n'.join([mark.join(header), *(mark.join([str(t), *map(repr, row)])
                                            for t, row in zip(times, values.tolist())), ''])
 
 
 def read(tmp_path, text, name='imu.csv', columns=None, units=None):
-    """Return stamps, values in SI and notes of a file with this text."""
+    """Return stamps, SI values and notes of a file with this text."""
     path = tmp_path / name
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     imu, notes = read_imu(path, build(ImuColumns, columns or {}), build(RecordUnits, units or {}))
@@ -55,7 +55,7 @@ SHAPES = {
 
 @pytest.mark.parametrize('shape', SHAPES)
 def test_stamps_and_values_are_those_of_the_file(shape, tmp_path):
-    """For any header and separator, to the nanosecond, in SI."""
+    """For any header and separator stamps are exact to 1 ns, and values are in SI units."""
     text, rate, force = SHAPES[shape]
     t_ns, values, _ = read(tmp_path, text)
     assert np.array_equal(t_ns, T_NS)
@@ -64,7 +64,11 @@ def test_stamps_and_values_are_those_of_the_file(shape, tmp_path):
 
 
 def test_a_map_of_columns_with_units(tmp_path):
-    """Unknown names, units in brackets or by units.*, additional columns noted."""
+    """
+    Columns of any name are read by a map, with units in brackets or from units.*.
+
+    Unused columns are noted.
+    """
     header = ('tick (us)', 'p', 'q', 'r', 'nx [mg]', 'ny [mg]', 'nz [mg]')
     text = table(header, T_NS // 1000).replace('tick', 'host name,tick').replace('\n', '\nabc,')
     text = text[4:] if text.startswith('abc,') else text
@@ -85,7 +89,7 @@ def test_a_map_of_columns_with_units(tmp_path):
 
 
 def test_a_repeated_header_and_capital_letters(tmp_path):
-    """Concatenated files, and names .CSV or .CSV.GZ."""
+    """A header repeated in concatenated files is skipped, and names .CSV or .CSV.GZ are read."""
     text = table(PLAIN, SECONDS)
     lines = text.split('\n')
     twice = '\n'.join([*lines[:20], lines[0], *lines[20:]])
@@ -99,7 +103,11 @@ def test_a_repeated_header_and_capital_letters(tmp_path):
 
 @pytest.mark.parametrize('shape', ['plain', 'semicolons', 'tabs'])
 def test_a_file_without_a_header_by_the_numbers_of_its_columns(shape, tmp_path):
-    """The refusal names the parameter; nothing of the first line is lost."""
+    """
+    A file without a header is refused, and is read if columns are given by number.
+
+    The message names the parameter, and the first line is not lost.
+    """
     text = SHAPES[shape][0].partition('\n')[2]
     with pytest.raises(ValueError, match='line 1: the header line contains numbers; '
                        'expected t_s, .*, or columns.t_s "column 1" and so on'):
@@ -124,7 +132,7 @@ def test_a_file_without_a_header_by_the_numbers_of_its_columns(shape, tmp_path):
     (table(['t_s', *(f'/{b}/angular_velocity/{a}' for b in 'lr' for a in 'xyz')], SECONDS),
      'columns.gx_rps to name one')])
 def test_what_is_no_such_table_is_one_sentence(text, sentence, tmp_path, capsys):
-    """The message is the same for both commands that read an IMU."""
+    """An invalid table gives one message, the same for both commands that read an IMU."""
     (tmp_path / 'imu.csv').write_text(text)
     for words in (['navigate', 'imu.csv', '-o', 'out'],
                   ['convert', 'imu.csv', 'bag', '-p', 'columns.az_mps2:=az_mps2']):
@@ -137,7 +145,7 @@ def test_what_is_no_such_table_is_one_sentence(text, sentence, tmp_path, capsys)
 
 
 def test_a_million_unknown_columns_are_a_few_and_a_number(tmp_path, capsys):
-    """The message stays short."""
+    """The message about 200 000 unknown columns has fewer than 1000 characters."""
     header = ','.join(f'column{k}' for k in range(200_000))
     (tmp_path / 'imu.csv').write_text(header + '\n' + ','.join('0' * 200_000) + '\n')
     assert main(['navigate', str(tmp_path / 'imu.csv'), '-o', str(tmp_path / 'out')]) == 2
@@ -147,7 +155,11 @@ def test_a_million_unknown_columns_are_a_few_and_a_number(tmp_path, capsys):
 
 @pytest.mark.parametrize('unit_ns, name', [(1, 'ns'), (1000, 'us'), (10 ** 6, 'ms')])
 def test_a_32_bit_clock_that_wraps_is_unwrapped(unit_ns, name):
-    """The stamps continue; smaller steps back are dropped later as out of order."""
+    """
+    A 32-bit clock that wraps around gives increasing stamps; smaller steps back are kept.
+
+    They are dropped later as out of order.
+    """
     period, step = 2 ** 32 * unit_ns, 10_000_000
     t_ns = period - 10 * step + 7 * unit_ns + np.arange(60) * step
     wrapped, said = unwrap_clock(t_ns % period)
@@ -158,7 +170,7 @@ def test_a_32_bit_clock_that_wraps_is_unwrapped(unit_ns, name):
 
 
 def test_a_reference_with_other_names_and_bad_rows(tmp_path):
-    """Radians and feet by their brackets, a map, and rows without a position dropped."""
+    """A reference in radians and feet is read by its units; rows without position are dropped."""
     rows = [f'{k},{0.96 + 1e-6 * k},{0.65},{1000.0 + k},{370.0}' for k in range(20)]
     rows[0] = '0,0,0,14.2,1'
     rows[5] = '5,0.96,0.65,nan,1'
@@ -175,7 +187,7 @@ def test_a_reference_with_other_names_and_bad_rows(tmp_path):
 
 
 def test_gzip_that_fills_the_memory_is_refused(tmp_path, capsys):
-    """A hundred megabytes of one row in 100 kB are refused."""
+    """A gzip file of 100 kB with 80 MB of one row is refused."""
     row = b'0,0,0,0,0,0,0\n'
     path = tmp_path / 'bomb.csv.gz'
     path.write_bytes(gzip.compress(','.join(PLAIN).encode() + b'\n' + row * (80_000_000 // 14)))
@@ -185,7 +197,7 @@ def test_gzip_that_fills_the_memory_is_refused(tmp_path, capsys):
 
 @pytest.mark.parametrize('name', ['x.csv', 'x.mcap', 'x.db3'])
 def test_devices_and_pipes_are_refused(name, tmp_path, capsys):
-    """Endless files are not read."""
+    """Devices and pipes, which may be endless, are refused."""
     import os
     os.mkfifo(tmp_path / name)
     (tmp_path / f'zero_{name}').symlink_to('/dev/zero')

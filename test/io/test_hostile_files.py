@@ -1,4 +1,4 @@
-"""Any file gives a finite result or one message."""
+"""Any input file gives a finite result or one message."""
 
 from contextlib import redirect_stderr, redirect_stdout
 import io
@@ -8,17 +8,17 @@ import warnings
 from support.hostile.files import Hostile, KINDS
 
 COUNT = 5000
-# Found by tools/fuzz_files.py: a gap of decades bridged step by step, a signalling NaN.
+# Found by tools/fuzz_files.py: a gap of decades bridged step by step, and a signalling NaN.
 FOUND = (7879, 17899, 40759)
-# CPU time of one file that only an endless loop takes.
+# CPU time of one file that only an endless loop exceeds, s.
 GUARD_S = 60.0
 
 
 def test_mutated_files_end_in_a_result_or_a_sentence(tmp_path, capsys):
-    """5000 mutations of every format; the seed identifies the file."""
+    """5000 mutations of every format give a result or one message; a seed identifies each."""
     hostile, failures = Hostile(tmp_path), []
     with warnings.catch_warnings():
-        # A NumPy warning would be printed to the user.
+        # A warning of NumPy would be printed to the user.
         warnings.simplefilter('error', RuntimeWarning)
         for seed in (*FOUND, *range(COUNT)):
             start = time.process_time()

@@ -1,4 +1,4 @@
-"""Positions anywhere on Earth: the origin of a map frame, and longitudes at the 180th meridian."""
+"""Positions anywhere on Earth: origin of the map frame, and longitudes at the 180th meridian."""
 
 import math
 
@@ -21,7 +21,7 @@ SECOND = 1_000_000_000
 
 
 def flown(path, latitude, longitude, *names):
-    """Write the bag of 20 s of racetrack from a position; names: topics, all if empty."""
+    """Write a bag with 20 s of racetrack from a position; names: topics, by default all."""
     words = [f'datum.latitude_deg:={latitude}', f'datum.longitude_deg:={longitude}',
              'motion.kind:=racetrack', 'duration_s:=20.0', 'rate_hz:=20.0']
     given = [word for a in words for word in ('-p', a)]
@@ -39,7 +39,11 @@ def apart_m(poses, latitude, longitude):
 
 @pytest.mark.parametrize('others', ([], ['truth/odometry', 'truth/fix']))
 def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_path, capsys):
-    """The datum comes from the fix or another solution beside it; the default is 90 km off."""
+    """
+    A converted solution has its position; the origin is found from a fix in the bag.
+
+    The default datum would be 90 km off.
+    """
     names = others or ['ins/fix']
     flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry', *names)
     target = tmp_path / 'flight.csv'
@@ -52,7 +56,7 @@ def test_the_solution_of_a_flight_at_55_n_37_e_lands_where_it_was(others, tmp_pa
 
 
 def test_no_datum_is_assumed(tmp_path, capsys):
-    """Without a fix the origin must be given; then it is used, with a note."""
+    """Without a fix the origin must be given; it is then used, with a note."""
     flown(tmp_path / 'bag', 55.0, 37.0, 'ins/odometry')
     words = ['convert', str(tmp_path / 'bag'), str(tmp_path / 'x.csv'), '--topic', 'ins/odometry']
     capsys.readouterr()
@@ -67,7 +71,7 @@ def test_no_datum_is_assumed(tmp_path, capsys):
 
 
 def test_the_default_datum_can_be_meant(tmp_path, capsys):
-    """A parameter accepts it, also against a fix at another position."""
+    """motion.recording.origin datum uses the datum, even if a fix shows another position."""
     flown(tmp_path / 'bag', 55.75, 37.62, 'ins/odometry')
     flown(tmp_path / 'other', 55.0, 37.0)
     origin = ['-p', 'motion.recording.origin:=datum']
@@ -81,7 +85,7 @@ def test_the_default_datum_can_be_meant(tmp_path, capsys):
 
 
 def test_a_flight_in_degrees_has_no_origin(tmp_path):
-    """A value that would be ignored is refused."""
+    """motion.recording.origin is refused for a CSV file, for which it would be ignored."""
     (tmp_path / 'x.csv').write_text('t_s\n')
     values = {'motion.recording.origin': 'datum'}
     with pytest.raises(ValueError, match='origin is datum, but .*x.csv is not a bag; expected'):
@@ -89,7 +93,7 @@ def test_a_flight_in_degrees_has_no_origin(tmp_path):
 
 
 def test_an_origin_that_wanders_is_refused(tmp_path):
-    """A fix that does not belong to the odometry gives no origin."""
+    """A fix that moves the origin by 111 m during the flight is refused."""
     def shifted(window):
         window[topics.TRUTH_FIX][1][-1, 0] += 1e-3
 
@@ -101,15 +105,13 @@ def test_an_origin_that_wanders_is_refused(tmp_path):
 
 @pytest.mark.parametrize('longitude', (179.999, -179.999))
 def test_a_flight_over_the_180th_meridian_is_read_again(longitude, tmp_path, capsys):
-    """
-    Published longitudes are within +-180 degrees, and the bag is a motion, in both directions.
-    """
+    """Over the 180th meridian, either way, longitudes stay in +-180 deg and are read back."""
     flown(tmp_path / 'bag', 60.0, longitude)
     with open_bag(tmp_path / 'bag') as bag:
         for name in ('/truth/fix', '/ins/fix'):
             degrees = bag.arrays(name, ('longitude',))['longitude']
             assert np.abs(degrees).max() <= 180.0
-            # The racetrack starts northwards and turns to the East.
+            # The racetrack starts northwards and turns to the east.
             assert (degrees.min() < 0.0 < degrees.max()) == (longitude > 0.0)
     values = {'motion.kind': 'racetrack', 'datum.latitude_deg': 60.0,
               'datum.longitude_deg': longitude}
@@ -124,7 +126,7 @@ def test_a_flight_over_the_180th_meridian_is_read_again(longitude, tmp_path, cap
 
 
 def westwards(path):
-    """Write a bag of truth that goes west over the meridian, and return its settings."""
+    """Write a bag of truth that crosses the 180th meridian westwards; return its settings."""
     values = {'motion.kind': 'route', 'motion.route.points.latitude_deg': (60.0, 60.0),
               'motion.route.points.longitude_deg': (-179.99, 179.0)}
     record(path, values, 20.0)
@@ -132,7 +134,7 @@ def westwards(path):
 
 
 def test_a_flight_west_over_the_180th_meridian(tmp_path):
-    """The longitude jumps from -180 to 180; read again it is continuous."""
+    """Where the published longitude jumps from -180 to 180 deg the motion is continuous."""
     chosen = westwards(tmp_path / 'bag')
     with open_bag(tmp_path / 'bag') as bag:
         degrees = bag.arrays('/truth/fix', ('longitude',))['longitude']
@@ -142,7 +144,7 @@ def test_a_flight_west_over_the_180th_meridian(tmp_path):
 
 
 def test_the_180th_meridian_in_single_messages():
-    """A fix beyond +-180 degrees is published within them, that of GNSS too."""
+    """Fixes beyond +-180 deg are published within these limits, also those of GNSS."""
     assert fix_one((0.0, math.radians(190.0), 5.0)) == pytest.approx((0.0, -170.0, 5.0))
     assert fix_one((0.0, math.radians(-190.0), 5.0)) == pytest.approx((0.0, 170.0, 5.0))
     assert fix_one((0.0, math.pi, 5.0))[1] == 180.0

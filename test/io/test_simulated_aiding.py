@@ -1,4 +1,4 @@
-"""The bag of simulate --aided has the topics of all six nodes, as they publish them."""
+"""The bag of simulate --aided has the topics of all six nodes, as the nodes publish them."""
 
 import re
 
@@ -50,7 +50,7 @@ def messages(bag, topic):
 
 
 def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
-    """To the bit: the node packs the same solution, one message at a time."""
+    """Messages of the navigator in the bag equal to the bit those packed by the node."""
     chosen, free, solution = run
     navigator = chosen.aided_navigator
     frame, route = MapFrame(navigator.datum, navigator.earth.rotation), GreatCircleRoute.of_points(
@@ -83,7 +83,7 @@ def test_the_messages_of_the_navigator_are_those_of_the_node(run, bag_path):
 
 
 def test_the_fixes_come_back(run, bag_path):
-    """Record and pair of messages give the fix again; the velocity is stamped at mid-window."""
+    """The fixes read from record and messages equal the original ones; stamps are mid-window."""
     chosen, _, solution = run
     with open_bag(bag_path) as bag:
         stamps, records = messages(bag, topics.METER_RECORD)
@@ -105,7 +105,7 @@ def test_the_fixes_come_back(run, bag_path):
     for fix, own in zip(found, solution.gnss_fixes):
         assert fix.t_ns == own.t_ns and fix.status == own.status
         if own.valid:
-            # Through degrees and variances and back: a few roundings.
+            # Conversion to degrees and variances and back: a few roundings.
             assert fix.v_n == own.v_n
             for field in ('lat', 'lon', 'position_sigma', 'velocity_sigma'):
                 assert getattr(fix, field) == pytest.approx(getattr(own, field), rel=1e-15)
@@ -113,7 +113,7 @@ def test_the_fixes_come_back(run, bag_path):
 
 def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, capsys):
     """
-    A live navigator computes from these messages the solution in the bag.
+    A live navigator computes the solution in the bag from the messages in the bag.
 
     Only the truth, which starts the solution and is its altimeter, passes through the map frame:
     1e-8 m there, and its effect on the filter.
@@ -156,7 +156,7 @@ def test_the_stream_of_the_bag_gives_the_solution_of_the_run(run, bag_path, caps
 
 
 def test_topics_order_and_every_reader(run, bag_path, capsys):
-    """All topics are in the order of stamps, and rosbags decodes each."""
+    """All topics are in the order of stamps, and rosbags decodes each of them."""
     pytest.importorskip('rosbags')
     from rosbags.highlevel import AnyReader
     with open_bag(bag_path) as bag:
@@ -190,7 +190,11 @@ def test_topics_order_and_every_reader(run, bag_path, capsys):
 
 
 def test_the_command_writes_the_bag(tmp_path, capsys):
-    """All topics or some; equal seeds are equal bytes; an output every 10th step, /clock."""
+    """
+    The command writes all topics or some, /clock, and an output every 10th step.
+
+    Equal seeds give equal bytes.
+    """
     flight = ('duration_s:=12.0', 'output_every:=10', 'publish_clock:=true', 'window.cycles:=500')
     bags = [tmp_path / name for name in 'ab']
     for bag in bags:
@@ -210,7 +214,7 @@ def test_the_command_writes_the_bag(tmp_path, capsys):
 
 
 def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
-    """As for the node: aided/sigma/* is silent, covariances are unknown."""
+    """A filter without covariance publishes nothing on aided/sigma/*; covariances are unknown."""
     path = tmp_path / 'bag'
     assert command(tmp_path, '--bag', str(path),
                    flight=('duration_s:=5.0', 'filter:=conventional')) == 0
@@ -224,7 +228,7 @@ def test_a_filter_without_covariance_publishes_no_sigma(tmp_path):
 
 
 def test_what_is_refused(tmp_path, capsys):
-    """Topics of the three nodes need --aided."""
+    """Topics of the three aiding nodes are refused without --aided."""
     assert main(['simulate', '-p', 'duration_s:=5.0', '-o', str(tmp_path / 'run'), '--bag',
                  str(tmp_path / 'bag'), '--topics', 'aided/fix']) == 2
     said = capsys.readouterr().err
@@ -245,7 +249,7 @@ def test_an_interrupted_bag_is_not_there(tmp_path, monkeypatch):
 @pytest.mark.parametrize('storage, compression', [('mcap', 'none'), ('mcap', 'zstd'),
                                                   ('sqlite3', 'none')])
 def test_blocks_of_messages_of_any_length(storage, compression, tmp_path):
-    """Among blocks of equal length, unsorted and empty ones: every byte, by log time."""
+    """Blocks of messages of any length, unsorted or empty, are written by log time."""
     rng = np.random.default_rng(1)
     texts = np.empty(300, dtype=object)
     texts[:] = [ENCAPSULATION + rng.bytes(int(n)) for n in rng.integers(1, 3000, 300)]

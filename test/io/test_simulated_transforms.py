@@ -22,7 +22,7 @@ FIXED = {'uav1/imu_link': (0.0, 0.0, 0.0), 'uav1/gnss_link': (1.0, 2.0, 3.0),
 
 @pytest.fixture(scope='module')
 def bags(tmp_path_factory):
-    """Return a function that gives the path of the bag of a flight with a source of TF."""
+    """Return a function that gives the path of the bag of a flight for a source of transforms."""
     made = {}
 
     def bag(source):
@@ -58,7 +58,7 @@ def odometry(path, topic):
 
 
 def test_frames_of_all_topics(bags):
-    """Every topic has the prefix; truth and aided solution in map, free INS in odom."""
+    """Every topic has the frame prefix; truth and aided solution are in map, free INS in odom."""
     with open_bag(bags('truth')) as bag:
         frames = {topic.name: bag.frames(topic.name)[0] for topic in (*topics.DATA, *topics.AIDING)
                   if topic is not topics.METER_RECORD}
@@ -70,13 +70,13 @@ def test_frames_of_all_topics(bags):
     assert frames['ins/odometry'] == ('uav1/ins_odom', 'uav1/base_link')
     assert frames['imu/data_raw'] == ('uav1/imu_link',)
     assert frames['gnss/fix'] == ('uav1/gnss_link',)
-    # Errors have a frame that TF knows.
+    # Errors have a frame that exists in TF.
     for topic in (*topics.ERRORS, *topics.AIDED_ERRORS, *topics.AIDED_SIGMAS):
         assert frames[topic.name] == ('uav1/map',)
 
 
 def test_the_run_is_announced(bags):
-    """sim/run is written once, latched, at the stamp of the first sample."""
+    """sim/run is written once, with transient local durability, stamped with the first sample."""
     with open_bag(bags('truth')) as bag:
         (name, log_ns, data), = bag.messages([topics.RUN.name])
         durabilities = {n: read_profiles(channel.qos)[0]['durability']
@@ -90,7 +90,7 @@ def test_the_run_is_announced(bags):
 
 @pytest.mark.parametrize('source', ['truth', 'ins', 'aided'])
 def test_instruments_stand_fixed(source, bags):
-    """/tf_static contains lever arms and mounting, and with the free INS its odom in map."""
+    """/tf_static has lever arms and mounting, and map to odom if the free INS is the source."""
     fixed = transforms(bags(source), '/tf_static')
     with open_bag(bags(source)) as bag:
         assert len([*bag.messages(['/tf_static'])]) == 1
@@ -107,7 +107,7 @@ def test_instruments_stand_fixed(source, bags):
 
 
 def test_truth_and_ins_place_the_vehicle(bags):
-    """The transforms are the poses of every Odometry message."""
+    """The transforms on /tf equal the poses of the Odometry messages of their source."""
     assert transforms(bags('truth'), '/tf') == {
         ('uav1/map', 'uav1/base_link'): odometry(bags('truth'), topics.TRUTH_ODOMETRY)}
     assert transforms(bags('ins'), '/tf') == {
@@ -115,7 +115,7 @@ def test_truth_and_ins_place_the_vehicle(bags):
 
 
 def test_the_chain_of_the_aided_solution(bags):
-    """map -> odom -> base_link is the aided pose; to the rounding of coordinates of 4 km."""
+    """map -> odom -> base_link is the aided pose, to the rounding of coordinates of 4 km."""
     found = transforms(bags('aided'), '/tf')
     free, moved = found['uav1/ins_odom', 'uav1/base_link'], found['uav1/map', 'uav1/ins_odom']
     assert len(found) == 2 and free == odometry(bags('aided'), topics.INS_ODOMETRY)
@@ -129,7 +129,7 @@ def test_the_chain_of_the_aided_solution(bags):
 
 
 def test_without_a_source_there_is_no_tf(tmp_path, capsys):
-    """An unknown source and the epoch now are refused by the command line."""
+    """Without a source there is no TF; an unknown source and the epoch 'now' are refused."""
     words = ['simulate', '--no-twin', '-p', 'duration_s:=1.0', '-p', 'motion.kind:=static', '-o']
     assert main([*words, str(tmp_path / 'a'), '--bag', str(tmp_path / 'bag'), '-p',
                  'time.epoch:=now']) == 0

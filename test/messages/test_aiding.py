@@ -1,4 +1,4 @@
-"""The messages of the aiding instruments agree with ROS, and fixes are restored bit for bit."""
+"""The messages of the aiding sensors agree with ROS, and fixes are restored to the bit."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -54,7 +54,7 @@ STATUSES = [Status(0, 'a', '', 'x' * 5, (('k', 'v'), ('', 'ä'))), Status(1, 'bc
 @pytest.mark.parametrize('statuses', [[], STATUSES[:1], STATUSES])
 @pytest.mark.parametrize('frame', ['', 'abc', 'velocity_meter_link'])
 def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
-    """ROS and rosbags read what we pack, and we read what they pack."""
+    """ROS and rosbags read our DiagnosticArray, and we read theirs."""
     data = diagnostic_array.pack_diagnostics(EPOCH + 5, frame, statuses)
     message = store().deserialize_cdr(data, topics.DIAGNOSTICS)
     assert bytes(store().serialize_cdr(message, topics.DIAGNOSTICS)) == data
@@ -65,7 +65,7 @@ def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
     assert message.header.frame_id == frame
     assert [Status(s.level[0], s.name, s.message, s.hardware_id, tuple(
         (v.key, v.value) for v in s.values)) for s in message.status] == statuses
-    # Their padding is uninitialised, at the end too.
+    # Their padding is uninitialised, also at the end.
     assert diagnostic_array.read_diagnostics(dump(message)) == (EPOCH + 5, frame, statuses)
 
 
@@ -74,12 +74,13 @@ def test_a_diagnostic_array_is_that_of_ros(statuses, frame):
     Status, st.integers(0, 255), TEXT, TEXT, TEXT, st.lists(st.tuples(TEXT, TEXT), max_size=4).map(
         tuple)), max_size=3))
 def test_any_diagnostic_array_comes_back(frame, statuses):
+    """Any DiagnosticArray is read back to the bit."""
     data = diagnostic_array.pack_diagnostics(7, frame, statuses)
     assert diagnostic_array.read_diagnostics(data) == (7, frame, statuses)
 
 
 def test_a_diagnostic_array_cut_anywhere_is_refused():
-    """Also a message that announces more than it can contain, and a big-endian one."""
+    """A DiagnosticArray cut anywhere, with excessive lengths, or big-endian is refused."""
     data = velocity_record.pack_fix(WINDOW, EPOCH)
     for size in range(len(data)):
         with pytest.raises(ValueError, match='expected'):
@@ -92,7 +93,7 @@ def test_a_diagnostic_array_cut_anywhere_is_refused():
 
 @pytest.mark.parametrize('fix', [WINDOW, NO_WINDOW])
 def test_a_velocity_fix_comes_back_from_its_record(fix):
-    """Bit for bit; the stamp is the end of the window, the level states whether it is valid."""
+    """A velocity fix is restored to the bit; stamp and level give window end and validity."""
     data = velocity_record.pack_fix(fix, EPOCH)
     assert repr(velocity_record.read_fix(data, EPOCH)) == repr(fix)
     stamp_ns, frame, (status,) = diagnostic_array.read_diagnostics(data)
@@ -108,13 +109,14 @@ def test_a_velocity_fix_comes_back_from_its_record(fix):
 @given(velocity=PAIR, sigma=PAIR, tan=ANY, tau=PAIR, g=PAIR, start=st.integers(0, 10**16),
        cycles=st.integers(1, 10**5), latency=st.integers(0, 10**11))
 def test_any_velocity_fix_comes_back(velocity, sigma, tan, tau, g, start, cycles, latency):
+    """Any velocity fix is read back from its record to the bit."""
     end = start + cycles * 10**7
     fix = VelocityFix(start, end, cycles, velocity, sigma, tan, tau, g, arrival_ns=end + latency)
     assert velocity_record.read_fix(velocity_record.pack_fix(fix, EPOCH), EPOCH) == fix
 
 
 def test_records_that_are_none_are_refused():
-    """Of another status, without a key, with a string for a number."""
+    """Records with another status, a missing key, or text in place of a number are refused."""
     def packed(name, values):
         return diagnostic_array.pack_diagnostics(0, '', [Status(0, name, '', '', tuple(values))])
     values = diagnostic_array.read_diagnostics(velocity_record.pack_fix(WINDOW, 0))[2][0].values
@@ -129,7 +131,7 @@ def test_records_that_are_none_are_refused():
 
 
 def test_the_velocity_for_display():
-    """The velocity is stamped mid-window; up and the rates have a huge variance."""
+    """The displayed velocity is stamped mid-window; unmeasured parts have a huge variance."""
     t_ns, *runs = velocity_record.velocity_one(WINDOW)
     data = topics.METER_VELOCITY.writer().pack(t_ns + EPOCH, *runs)
     message = ros(topics.TWIST)[1](data)
@@ -144,7 +146,7 @@ def test_the_velocity_for_display():
 
 
 def pairs(fixes, latency_ns=120_000_000, swapped=False):
-    """Return the fixes that a reader makes of GnssFixes."""
+    """Return the fixes that a reader makes from the messages of GnssFixes."""
     writer, reader = GnssWriter(EPOCH), GnssPairs(EPOCH, latency_ns)
     found = []
     for fix in fixes:
@@ -158,7 +160,7 @@ def pairs(fixes, latency_ns=120_000_000, swapped=False):
 
 @pytest.mark.parametrize('swapped', [False, True])
 def test_a_gnss_fix_comes_back(swapped):
-    """All to the bit except the angles, which pass through degrees: below 1e-9 m here."""
+    """A GNSS fix is restored to the bit except the angles, which err by less than 1e-9 m."""
     none = no_gnss_fix(8 * SECOND, OUTAGE, 8_120_000_000)
     later = replace(FIX, t_ns=9 * SECOND, arrival_ns=9_120_000_000)
     found = pairs([FIX, none, later], swapped=swapped)
@@ -176,9 +178,9 @@ def test_a_gnss_fix_comes_back(swapped):
        sigma=st.floats(0.0, 1e6).filter(lambda s: s == 0.0 or s > 1e-100))
 def test_anywhere_on_earth(lat, lon, sigma):
     """
-    Two conversions round twice each, and a degree is rounded: 1.5 ulp of pi and half of 180 deg.
+    Anywhere on Earth angles err by 1.5 ulp of pi and half an ulp of 180 deg.
 
-    A standard deviation is the square root of its variance, to the bit.
+    Two conversions round twice each, and a degree is rounded. Sigmas are restored to the bit.
     """
     fix = replace(FIX, lat=lat, lon=lon, position_sigma=(sigma,) * 3)
     found, = pairs([fix])
@@ -189,7 +191,7 @@ def test_anywhere_on_earth(lat, lon, sigma):
 
 
 def test_repeated_lost_and_restarted_messages():
-    """Repeated halves and fixes without velocity are skipped; a jump back starts anew."""
+    """Repeated messages and fixes without velocity are skipped; a jump back starts anew."""
     writer, reader = GnssWriter(0), GnssPairs(0, 0)
     fixes = [replace(FIX, t_ns=k * SECOND, arrival_ns=k * SECOND) for k in range(5)]
     both = [(writer.fix(f), writer.velocity(f)) for f in fixes]
@@ -207,7 +209,7 @@ def test_repeated_lost_and_restarted_messages():
 
 
 def test_the_status_of_a_fix_as_ros_reads_it():
-    """A valid fix has status 0, GPS, known diagonal; an invalid one -1, NaN, unknown."""
+    """A valid fix has status 0, GPS, and known variances; an invalid one -1, NaN, and unknown."""
     _, load, _ = ros(topics.FIX)
     writer = GnssWriter(EPOCH)
     message = load(writer.fix(FIX))
@@ -235,7 +237,7 @@ def test_the_status_of_a_fix_as_ros_reads_it():
 
 @pytest.mark.parametrize('frame', ['', 'm', 'ab', 'map', 'gnss_link'])
 def test_the_numbers_of_a_fix(frame):
-    """They are read back for any frame, from our bytes, from rosbags and in a block."""
+    """The values of a fix are read back for any frame: from us, rosbags, and blocks."""
     writer = Writer(topics.FIX, frame, numbers=(-1, 5, 2))
     data = writer.pack(1, (1.0, 2.0, 3.0))
     again = bytes(store().serialize_cdr(store().deserialize_cdr(data, topics.FIX), topics.FIX))
@@ -278,10 +280,10 @@ def test_bags_keep_them(storage, tmp_path):
 
 @pytest.mark.parametrize('variance', [0.0, -1.0, math.nan])
 def test_a_variance_that_is_none_is_refused_by_the_navigator(variance):
-    """Other receivers send zeros, or worse: the fix is read, and dropped with one message."""
+    """A fix with a variance of zero or less is read, and dropped with one message."""
     reader = GnssPairs(EPOCH, 0)
     stamp, place = 7 * SECOND + EPOCH, (55.0, 37.0, 100.0)
-    # Packed as others do: our own writer refuses values that are not finite.
+    # Packed like other receivers do: our own writer refuses values that are not finite.
     reader.push_fix(*topics.GNSS_FIX.writer().pack_block(
         [stamp], np.array([[*place, *(variance,) * 3]])))
     fix, = reader.push_velocity(topics.GNSS_VELOCITY.writer().pack(
@@ -292,7 +294,7 @@ def test_a_variance_that_is_none_is_refused_by_the_navigator(variance):
 
 
 def test_the_bound_of_a_velocity_is_that_of_its_norm():
-    """Each component is below 1e5 m/s, and the norm beyond it."""
+    """Each component of the velocity is below 1e5 m/s; a norm beyond it is refused."""
     check_gnss(replace(FIX, v_n=(5e4, 5e4, 5e4)))
     with pytest.raises(StreamFault, match='has a velocity of .* expected less than 100000;'):
         check_gnss(replace(FIX, v_n=(7e4, 7e4, 7e4)))

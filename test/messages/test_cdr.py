@@ -1,4 +1,4 @@
-"""Messages as bytes equal those of ROS, and those of ROS are read back."""
+"""Packed messages equal those of ROS to the byte, and those of ROS are read back."""
 
 import math
 
@@ -48,6 +48,7 @@ def leaves(message):
 @pytest.mark.parametrize('frame', FRAMES)
 @pytest.mark.parametrize('type_name', TYPES)
 def test_ros_reads_what_is_packed(type_name, frame):
+    """rclpy reads stamp, strings and doubles of our messages; the lengths are equal."""
     cls = ros_class(type_name)
     serialization = pytest.importorskip('rclpy.serialization')
     stamp, values = 12_345_678_901_234_567, values_of(type_name)
@@ -61,6 +62,7 @@ def test_ros_reads_what_is_packed(type_name, frame):
 @pytest.mark.parametrize('frame', FRAMES)
 @pytest.mark.parametrize('type_name', TYPES)
 def test_what_ros_packs_is_read(type_name, frame):
+    """Our reader reads stamp, strings and doubles of messages packed by rclpy."""
     cls = ros_class(type_name)
     serialization = pytest.importorskip('rclpy.serialization')
     stamp, values = 987_654_321, values_of(type_name)
@@ -73,6 +75,7 @@ def test_what_ros_packs_is_read(type_name, frame):
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_rosbags_reads_what_is_packed(type_name):
+    """rosbags reads our messages, and we read them again after it has packed them."""
     typesys = pytest.importorskip('rosbags.typesys')
     store = typesys.get_typestore(typesys.Stores.ROS2_JAZZY)
     data = writer_of(type_name, 'map').pack(5, values_of(type_name))
@@ -83,6 +86,7 @@ def test_rosbags_reads_what_is_packed(type_name):
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_a_block_is_the_single_messages(type_name):
+    """Messages packed as a block have the bytes of messages packed one by one."""
     layout = LAYOUTS[type_name]
     writer = Writer(type_name, *['map', 'base_link'][:layout.strings])
     width = sum(b - a for a, b in layout.runs)
@@ -96,6 +100,7 @@ def test_a_block_is_the_single_messages(type_name):
 
 
 def test_constants_stand_in_every_message():
+    """Constants of a Writer are in every message, with zeros between the runs."""
     writer = Writer('sensor_msgs/msg/Imu', 'imu_link', constants={3: 1.0, 4: -1.0},
                     runs=((13, 16), (25, 28)))
     message = writer.pack(0, (1.0, 2.0, 3.0), (4.0, 5.0, 6.0))
@@ -113,6 +118,7 @@ def test_constants_stand_in_every_message():
     values=strategies.lists(strategies.floats(allow_nan=False, allow_infinity=False),
                             min_size=49, max_size=49))
 def test_runs_come_back_whatever_the_strings(stamp, frame, values):
+    """Any stamp and runs of doubles are read back to the bit, for any frame name."""
     runs = ((0, 7), (43, 49))
     a, b = tuple(values[:7]), tuple(values[43:])
     data = Writer('nav_msgs/msg/Odometry', frame, 'b').pack(stamp, a, b)
@@ -121,6 +127,7 @@ def test_runs_come_back_whatever_the_strings(stamp, frame, values):
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_a_message_cut_anywhere_is_refused(type_name):
+    """A message truncated at any byte raises a ValueError."""
     data = writer_of(type_name, 'map').pack(1, values_of(type_name))
     reader = Reader(type_name)
     reader.read(data)
@@ -130,19 +137,21 @@ def test_a_message_cut_anywhere_is_refused(type_name):
 
 
 def test_big_endian_is_refused():
+    """A big-endian message is refused with the encapsulation that is expected."""
     data = writer_of('std_msgs/msg/Header', 'map').pack(1, ())
     with pytest.raises(ValueError, match='little-endian'):
         Reader('std_msgs/msg/Header').read(b'\x00\x00' + data[2:])
 
 
 def test_the_wrong_number_of_strings_is_refused():
+    """A Writer without all frame names of the message is refused."""
     with pytest.raises(ValueError, match='has 2 strings'):
         Writer('nav_msgs/msg/Odometry', 'map')
 
 
 @pytest.mark.parametrize('wrong', [math.nan, math.inf, -math.inf])
 def test_what_is_no_number_is_not_packed(wrong):
-    """Values that are not finite are not packed; a huge sum of finite numbers is."""
+    """Values that are not finite are not packed; finite numbers with a huge sum are."""
     writer = Writer('geometry_msgs/msg/Vector3Stamped', 'enu')
     for values in ((wrong, 0.0, 0.0), (0.0, wrong, -wrong)):
         with pytest.raises(ValueError, match='would hold .* expected finite numbers'):
@@ -151,7 +160,7 @@ def test_what_is_no_number_is_not_packed(wrong):
 
 
 def test_nanoseconds_are_less_than_a_second():
-    """A sender of more has a broken clock; our messages never have more."""
+    """Stamps with 1e9 nanoseconds or more are refused; ours never have as many."""
     data = bytearray(Writer('std_msgs/msg/Header', 'map').pack(1))
     data[8:12] = (1_000_000_000).to_bytes(4, 'little')
     with pytest.raises(ValueError, match='1000000000 nanoseconds in its stamp; expected less'):

@@ -1,4 +1,4 @@
-"""Nodes accept only plausible messages: every field, every stamp, every length."""
+"""Nodes accept only plausible messages: every field, stamp and length is checked."""
 
 import math
 import struct
@@ -15,7 +15,7 @@ FIELDS = [(topic, run, k) for topic, runs in RUNS.items() for run in runs for k 
 
 
 def message(topic, place=None, value=0.0, stamp_ns=5 * SECOND):
-    """Return bytes with all doubles 0.1 but one."""
+    """Return the bytes of a message whose doubles are 0.1 except for one."""
     data = topic.writer().pack(stamp_ns)
     count = {topics.TRUTH_IMU: 37, topics.TRUTH_ODOMETRY: 85}[topic]
     values = np.full(count, 0.1)
@@ -27,7 +27,7 @@ def message(topic, place=None, value=0.0, stamp_ns=5 * SECOND):
 @pytest.mark.parametrize('topic, run, place', FIELDS,
                          ids=[f'{topic.name}-{k}' for topic, _, k in FIELDS])
 def test_every_field_has_a_bound(topic, run, place):
-    """A value at the bound is refused, by name and instant; below it is read to the bit."""
+    """A value at the bound is refused with name and instant; one below it is read to the bit."""
     name, bound, unit = BOUNDS[topic.type_name, run]
     reader = PlausibleReader(topic, RUNS[topic])
     for wrong in (bound, -bound, 1e150, -1e200, 1.7e308, math.inf, -math.inf, math.nan):
@@ -49,7 +49,7 @@ def test_what_is_not_read_may_hold_anything():
 
 
 def test_a_run_without_a_bound_is_never_read():
-    """A reader of a new field must enter it into the table."""
+    """A field without a bound in the table cannot be read."""
     with pytest.raises(KeyError):
         PlausibleReader(topics.TRUTH_IMU, ((16, 25),))
 
@@ -60,7 +60,7 @@ def test_a_run_without_a_bound_is_never_read():
     (5, SECOND, '1000000000 nanoseconds in its stamp; expected less than 1e9'),
     (2**31 - 1, 2**32 - 1, '4294967295 nanoseconds in its stamp')])
 def test_stamps_that_no_run_has(sec, nanosec, sentence):
-    """Negative, of a broken clock, beyond the range of an acknowledgement."""
+    """Stamps that are negative, or have 1e9 nanoseconds or more, are refused."""
     data = message(topics.TRUTH_IMU)
     with pytest.raises(ValueError, match=sentence):
         PlausibleReader(topics.TRUTH_IMU).read(
@@ -68,7 +68,7 @@ def test_stamps_that_no_run_has(sec, nanosec, sentence):
 
 
 def test_the_first_and_the_last_stamp():
-    """Jitter makes the first stamps negative; the last second of 32 bits is read."""
+    """Stamps from -1 s (jitter at the start) to the last second of 32 bits are read."""
     for stamp_ns in (-SECOND, -1, 0, 2**31 * SECOND - 1):
         data = message(topics.TRUTH_IMU, stamp_ns=stamp_ns)
         assert PlausibleReader(topics.TRUTH_IMU).read(data)[0] == stamp_ns
@@ -80,6 +80,6 @@ def test_the_first_and_the_last_stamp():
     message(topics.TRUTH_IMU)[:12] + b'\xff' * 4 + message(topics.TRUTH_IMU)[16:]],
     ids=['nothing', '3 bytes', '2 bytes', 'cut', 'big-endian', 'XCDR2', 'endless text'])
 def test_malformed_messages_are_one_sentence(data):
-    """A reader raises nothing but a ValueError."""
+    """Malformed messages raise a ValueError and no other exception."""
     with pytest.raises(ValueError, match='expected'):
         PlausibleReader(topics.TRUTH_IMU).read(data)

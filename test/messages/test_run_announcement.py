@@ -11,7 +11,7 @@ RUN = RunAnnouncement(1735689600 * 10**9 + 123, 5 * 10**9, 200.0 / 3.0, 3600 * 1
 
 
 def changed(**values):
-    """Return the message with changed texts; None removes one."""
+    """Return the message with changed texts; the value None removes a text."""
     _, frame, (status,) = read_diagnostics(RUN.pack())
     pairs = {**dict(status.values), **values}
     return pack_diagnostics(0, frame, [replace(status, values=tuple(
@@ -19,7 +19,7 @@ def changed(**values):
 
 
 def test_a_run_comes_back_bit_for_bit():
-    """ROS reads the message by its definition, stamped with the first sample."""
+    """An announcement is restored to the bit; ROS decodes it, stamped with the first sample."""
     assert read_announcement(RUN.pack()) == RUN
     message = STORE.deserialize_cdr(RUN.pack(), 'diagnostic_msgs/msg/DiagnosticArray')
     assert message.header.stamp.sec == 1735689605 and message.header.stamp.nanosec == 123
@@ -40,5 +40,6 @@ def test_a_run_comes_back_bit_for_bit():
     (pack_diagnostics(0, '', []), 'sim/run holds 0 statuses'),
     (RUN.pack()[:40], 'ends too early')])
 def test_what_is_no_announcement(data, sentence):
+    """An invalid announcement is refused with the field and the expectation."""
     with pytest.raises(ValueError, match=sentence):
         read_announcement(data)

@@ -1,4 +1,4 @@
-"""Transforms: bytes by the definition of tf2_msgs, and the frames of a vehicle."""
+"""Transforms: bytes as defined by tf2_msgs, and the fixed frames of a vehicle."""
 
 from ins_sim.messages import placements, topics
 from ins_sim.messages.transforms import (AT_PARENT, first_stamp, pose_between, read_rotations,
@@ -17,7 +17,7 @@ POSE = (1.0, -2.0, 3.5, 0.5, -0.5, 0.5, 0.5)
 @pytest.mark.parametrize('parent, child', [('map', 'base_link'), ('a', 'ab'), ('uav1/map', 'abc'),
                                            ('abcd', 'abcde'), ('odom', 'x')])
 def test_bytes_are_those_of_the_definition(parent, child):
-    """rosbags packs the same message to the same bytes; our reader reads both."""
+    """rosbags packs the same transform to the same bytes; our reader reads both."""
     data = TransformWriter((parent, child)).pack(1735689600123456789, POSE)
     message = STORE.deserialize_cdr(data, topics.TRANSFORMS)
     one, = message.transforms
@@ -33,7 +33,7 @@ def test_bytes_are_those_of_the_definition(parent, child):
 
 
 def test_several_transforms_of_one_instant():
-    """With names of any length rosbags packs the same bytes."""
+    """Several transforms of one instant, with names of any length, equal the bytes of rosbags."""
     pairs = ('map', 'odom'), ('uav1/odom', 'uav1/base_link'), ('a', 'b')
     poses = [(float(k), *POSE[1:]) for k in range(3)]
     data = TransformWriter(*pairs).pack(10**9 + 5, *poses)
@@ -44,6 +44,7 @@ def test_several_transforms_of_one_instant():
 
 
 def test_a_pose_that_is_not_finite_is_not_sent():
+    """A pose with NaN is refused instead of packed; the message has the stamp."""
     with pytest.raises(ValueError, match='a transform of 1.000000000 s would hold'):
         TransformWriter(('map', 'odom')).pack(10**9, (float('nan'), *POSE[1:]))
 
@@ -63,7 +64,7 @@ def test_map_to_odom_brings_the_free_pose_onto_the_aided_one():
 
 
 def test_what_stands_fixed():
-    """The GNSS antenna sits at its lever arm; the meter is turned left by its mounting error."""
+    """The GNSS antenna is at its lever arm; the meter is rotated left by its mounting error."""
     gnss = build(GnssSettings, {'lever_arm_m': [1.0, -2.0, 0.5]})
     assert placements.gnss_mounting(gnss) == ('base_link', 'gnss_link', (
         1.0, -2.0, 0.5, 0.0, 0.0, 0.0, 1.0))

@@ -10,7 +10,7 @@ from ins_sim.settings.place import Datum, Earth
 
 @pytest.fixture(scope='module')
 def flown(tmp_path_factory):
-    """Return a recorded motion with every degree of freedom, and 20 s of it."""
+    """Return a recorded motion that moves in every degree of freedom, and 20 s of its truth."""
     path = tmp_path_factory.mktemp('flown') / 'aggressive.csv'
     motion = make_motion(MotionSettings(kind='aggressive'), Datum(),
                          Earth())

@@ -1,4 +1,4 @@
-"""Attitudes of the bench motions: one function for floats, arrays, series and compiled loops."""
+"""Attitudes of the bench motions: floats, arrays, series and compiled loops give the same bits."""
 
 import ins_sim
 from ins_sim.core.motion import bench_attitudes
@@ -26,7 +26,7 @@ def bench(name):
 
 @pytest.mark.parametrize('name', MOTIONS)
 def test_floats_arrays_series_and_loops_give_equal_bits(name):
-    """Floats, arrays, series and loops, also compiled ones with Numba, agree to the bit."""
+    """The attitude as floats, arrays, series, and plain or compiled loops has the same bits."""
     motion = bench(name)
     attitude, constants = motion._attitude, motion._constants
     expected = np.array([attitude(constants, t) for t in TIMES.tolist()])
@@ -45,7 +45,7 @@ def test_floats_arrays_series_and_loops_give_equal_bits(name):
 
 @pytest.mark.parametrize('name', MOTIONS)
 def test_the_rate_is_that_of_the_attitude(name):
-    """Quaternions are unit, and their derivatives by series agree with those by differences."""
+    """Quaternions have norm 1, and their derivatives by series agree with differences."""
     motion = bench(name)
     attitude, constants, h = motion._attitude, motion._constants, 1e-3
     t = np.linspace(0.1, 9.0, 40)
@@ -53,7 +53,7 @@ def test_the_rate_is_that_of_the_attitude(name):
         [x.c for x in attitude(constants, taylor.Series.time(t, 5))]).swapaxes(0, 1)
     np.testing.assert_allclose((q * q).sum(axis=0), 1.0, rtol=2e-15)
     before, after = (np.array(attitude(constants, t + s)) for s in (-h, h))
-    # Remainder of the series, and rounding divided by h.
+    # Remainder of the series, and rounding divided by the step h.
     bound = 1.1 * h ** 4 * np.abs(fifth).max() + 1e-15 / h
     np.testing.assert_allclose((after - before) / (2.0 * h), rate + h * h * third, rtol=0,
                                atol=bound)
@@ -61,14 +61,14 @@ def test_the_rate_is_that_of_the_attitude(name):
 
 @pytest.mark.parametrize('name', MOTIONS)
 def test_the_truth_where_nothing_moves_is_that_of_any_motion(name):
-    """Truth that is computed once, because nothing moves, equals that of each instant."""
+    """If nothing moves the truth is computed once; it equals the truth of each instant."""
     motion, t_ns = bench(name), np.round(TIMES * 1e9).astype(np.int64)
     for field, values in ins_sim.Motion.at(motion, t_ns).arrays().items():
         assert np.array_equal(getattr(motion.at(t_ns), field), values), field
 
 
 def test_all_motions_at_a_bench_are_here():
-    """Every bench motion of the table of motions is in this test."""
+    """Every bench motion in the table of motions is tested in this file."""
     kinds = [kind for kind in ins_sim.settings.motion.MOTIONS if kind not in (
         'recording', 'route', 'guided', 'cruise', 'racetrack', 'aggressive')]
     assert all(isinstance(bench(kind), BenchMotion) for kind in kinds)

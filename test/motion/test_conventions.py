@@ -1,4 +1,4 @@
-"""Conventions of motions: axes, angles, heading, readings of an IMU at rest."""
+"""Conventions of motions: axes, angles, heading, and readings of an IMU at rest."""
 
 import math
 
@@ -22,7 +22,11 @@ def test_attitude_of_the_paper():
 
 
 def test_psi_zero_looks_north_theta_lifts_the_nose_gamma_lowers_the_right_wing():
-    """Signs that can be checked by hand; positive psi turns from north towards west."""
+    """
+    psi = 0 is north, theta raises the nose, gamma lowers the right wing; psi turns to the west.
+
+    These signs can be checked by hand.
+    """
     def axes(**angles):
         q = motion_of('static', **{'motion__theta_deg': 0.0, **angles}).at(np.array([0])).q_nb[0]
         return matrix(q).T
@@ -37,9 +41,9 @@ def test_psi_zero_looks_north_theta_lifts_the_nose_gamma_lowers_the_right_wing()
 
 def test_heading_of_flights_is_clockwise():
     """
-    The cruise flies a course of 300 deg, north-west, with the nose along it.
+    The cruise has a course of 300 deg, north-west, with the nose along the course.
 
-    The heading sways by up to 0.8 deg about the course, and the nose is up by at most 3.8 deg,
+    The heading deviates by up to 0.8 deg from the course, and the nose is up by at most 3.8 deg,
     which shortens its level component by 0.0022.
     """
     cruise = motion_of('cruise').at(np.array([2_000_000_000_000]))
@@ -50,7 +54,7 @@ def test_heading_of_flights_is_clockwise():
 
 
 def test_imu_at_rest_reads_gravity_up_and_earth_rate():
-    """At rest an IMU reads +g on z and the rate relative to inertial space (REP-145)."""
+    """At rest an IMU reads +g on z, and the rotation rate of the Earth (REP-145)."""
     truth = motion_of('static', motion__theta_deg=0.0).at(np.array([0]))
     lat = math.radians(55.0)
     np.testing.assert_allclose(truth.f_ib_b[0], [0, 0, ellipsoid.gravity(math.sin(lat), 0.0)],

@@ -16,7 +16,7 @@ FORCE, LAG_S = 20.0, 0.4
 
 
 def test_closed_forms_solve_the_equations():
-    """Closed forms agree with RK4 of 0.1 ms, error (1e-4/0.4)^4/120 of the command per second."""
+    """The closed forms agree with RK4 of 0.1 ms to (1e-4/0.4)^4/120 of the command per second."""
     history, period_ns = SteeredHistory(FORCE, LAG_S, 200_000_000, (100.0, -2.0)), 200_000_000
     rng, state, command = np.random.default_rng(2), np.array([100.0, -2.0, 0.0]), 0.0
 
@@ -40,7 +40,7 @@ def test_closed_forms_solve_the_equations():
 
 
 def test_before_the_first_command_it_flies_straight():
-    """Without a command the motion is straight, at any earlier time and again after ``begin``."""
+    """Without a command the motion is straight: before the first one, and after ``begin``."""
     motion = guided(offset_m=50.0, offset_rate_m_s=1.5)
     motion.begin(2_000_000_000)
     states = motion.states(np.array([-3_000_000_000, 0, 2_000_000_000]))
@@ -53,7 +53,7 @@ def test_before_the_first_command_it_flies_straight():
 
 
 def test_what_is_not_known_is_refused():
-    """The future, the forgotten past, commands at another time and NaN commands are rejected."""
+    """Future instants, a forgotten past, commands at other times and NaN commands are refused."""
     motion = fly(guided(), 2.0)
     assert motion.end_s == 2.0 and motion.known_ns == 2_000_000_000
     for ask in (lambda: motion.at(np.array([2_000_000_001])), lambda: motion.one(2_000_000_001)):
@@ -70,7 +70,7 @@ def test_what_is_not_known_is_refused():
 
 
 def test_any_cutting_gives_the_same_bits():
-    """Blocks, single instants, later commands and a forgotten past do not change any bit."""
+    """Blocks, single instants, later commands and a forgotten past change no bit."""
     route = {'wind_m_s': 8.0, 'wind_from_deg': 250.0, 'gust_m_s': 0.5}
     t_ns = instants(6.0, 2_500_000)
     whole = fly(guided(route), 8.0).at(t_ns)
@@ -129,7 +129,7 @@ def test_differences_of_the_pose(route):
 
 
 def test_pose_and_its_first_derivatives_are_continuous():
-    """Pose and first derivatives are continuous where the command changes slope or jumps."""
+    """Pose and first derivatives are continuous where the command changes its slope or jumps."""
     motion = fly(guided(), 30.0)
     edges = instants(25.0)[1:]
     before, after = motion.at(edges), motion.at(edges + 1)
@@ -140,7 +140,7 @@ def test_pose_and_its_first_derivatives_are_continuous():
 
 
 def test_attitude_and_side_force_are_those_of_the_sideslip():
-    """Without wind the track is beta to the right of the nose and the force is Z beta left."""
+    """Without wind the track is beta to the right of the nose, the force Z beta to the left."""
     motion = fly(guided({'attack_deg': 0.0}), 20.0)
     truth, states = motion.at(instants(20.0)), motion.states(instants(20.0))
     v = body_velocity(truth)
@@ -159,7 +159,7 @@ def test_attitude_and_side_force_are_those_of_the_sideslip():
 
 
 def test_in_wind_the_force_takes_the_sideslip_in_the_air():
-    """The commanded beta is relative to the air; over ground the drift angle of wind is added."""
+    """In wind the commanded beta is relative to the air; the drift angle is added over ground."""
     wind = {'wind_m_s': 20.0, 'wind_from_deg': 120.0, 'attack_deg': 0.0}
     motion = fly(guided(wind), 20.0)
     truth, states = motion.at(instants(20.0)), motion.states(instants(20.0))
@@ -170,7 +170,7 @@ def test_in_wind_the_force_takes_the_sideslip_in_the_air():
 
 
 def test_turns_are_those_of_the_route():
-    """z and v_z are continuous: steered on the leg, parallel to the track in the turn."""
+    """z and v_z are continuous: on legs the vehicle is steered, in turns parallel to the track."""
     motion = guided(offset_m=0.0)
     start, end = motion.turns[0]
     fly(motion, end + 1.1, lambda t: 0.02 if t < 5.0 else 0.0 if t < 10.0 else (
@@ -185,6 +185,6 @@ def test_turns_are_those_of_the_route():
 
 
 def test_a_weave_is_refused():
-    """A guided motion with a weave is rejected with one sentence."""
+    """A guided motion with a weave is refused with one message."""
     with pytest.raises(ValueError, match='weave_deg is 1 deg with motion.kind guided; expected 0'):
         guided({'weave_deg': 1.0})

@@ -21,7 +21,11 @@ def velocity(gusts, t):
 
 
 def test_variance_and_distance():
-    """In every hour each axis has its standard deviation, and the displacement is metres only."""
+    """
+    In every hour each axis has its standard deviation within 1/LINES, and moves by 40 m at most.
+
+    This holds for 24 seeds.
+    """
     t = np.arange(0.0, 3600.0, 0.1)
     rms, far = [], []
     for seed in range(24):
@@ -33,8 +37,8 @@ def test_variance_and_distance():
     rms, far = np.array(rms), np.array(far)
     print(f'\n24 seeds, one hour: rms {rms.min():.4f} to {rms.max():.4f} m/s (0.5), displaced by '
           f'{far.min():.1f} to {far.max():.1f} m at most')
-    # Lines are drawn apart, except for neighbours: a pair in phase has 2/LINES of the variance
-    # more, as much as the two lines alone.
+    # Frequencies are drawn at a distance, except for neighbours: a pair in phase has 2/LINES of
+    # the variance in addition, as much as the two lines alone.
     assert np.abs(rms / SIGMA - 1.0).max() < 1.0 / LINES
     assert far.max() < 40.0
 
@@ -48,7 +52,7 @@ def test_spectrum_is_of_first_order():
         values = np.cos(rates * lag)
         expected = quad(lambda w: math.cos(w * lag) * TAU / (1.0 + (w * TAU) ** 2) / span,
                         LOWEST / TAU, HIGHEST / TAU, limit=500)[0]
-        # The frequencies of a seed are stratified: the mean errs less than independent ones would.
+        # The frequencies of a seed are stratified: the mean errs less than for independent ones.
         sigmas = abs(values.mean() - expected) / (values.std() / math.sqrt(len(values)))
         print(f'\nlag {lag:g} s: correlation {values.mean():.4f}, density {expected:.4f}, '
               f'exp(-t/tau) {math.exp(-lag / TAU):.4f}', end='')
@@ -66,8 +70,8 @@ def test_spectrum_is_of_first_order():
         model = SIGMA ** 2 * 4.0 * TAU / (1.0 + (2.0 * math.pi * f[band] * TAU) ** 2)
         ratio = power[band].sum() / model.sum()
         print(f'{low:g} to {2 * low:g}: {ratio:.3f}')
-        # The truncated variance is redistributed inside; the standard deviation is half a line of
-        # each component of 120 in or out of the octave, because lines are stratified.
+        # The truncated variance is redistributed inside. The standard deviation is that of half a
+        # line of each component of 120, in or out of the octave, because lines are stratified.
         lines = LINES / span * np.diff(np.arctan(2.0 * math.pi * TAU * np.array((1, 2)) * low))[0]
         assert abs(ratio / (0.5 * math.pi / span) - 1.0) < 4.0 * 0.5 / lines / math.sqrt(120)
 
@@ -87,7 +91,7 @@ def test_axes_and_seeds_are_independent():
 
 
 def test_the_flight_has_its_gusts():
-    """The seed determines the flight, and the gust is part of the velocity."""
+    """The seed determines the flight, and the gusts are part of the velocity."""
     motion, calm = route(GUSTS), route()
     t_ns = instants(motion, 1.0)
     truth, still = motion.at(t_ns), calm.at(t_ns)
@@ -96,14 +100,14 @@ def test_the_flight_has_its_gusts():
     assert np.abs(other.v_n - truth.v_n).max() > 0.5
     difference = truth.v_n - still.v_n - gust_velocity(motion, t_ns)
     print(f'\nvelocity less calm velocity less gust: {np.abs(difference).max():.1e} m/s')
-    # 40 m of displacement in axes that turn at 5e-5 rad/s.
+    # 40 m of displacement in axes that rotate at 5e-5 rad/s.
     assert np.abs(difference).max() < 2e-3
     rms = np.sqrt((gust_velocity(motion, t_ns) ** 2).mean(axis=0))
     assert np.abs(rms - 0.5).max() < 0.05
 
 
 def test_any_cutting_gives_the_same_bits():
-    """One, two or a thousand instants at a time, and separate sinusoids, give the same bits."""
+    """One, two or a thousand instants per call, and separate sinusoids, give the same bits."""
     gusts = Gusts(SIGMA, LENGTH, AIRSPEED, 3)
     t = np.arange(1000) * 0.0137
     whole = np.array([axis.c for axis in gusts.displacement(t)])

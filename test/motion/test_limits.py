@@ -1,4 +1,4 @@
-"""Motions beyond the limits of the simulation are rejected with one sentence."""
+"""Motions beyond the limits of the simulation are refused with one message."""
 
 import math
 
@@ -30,7 +30,7 @@ def words(values):
       'datum.latitude_deg': -89.9}, 'the motion crosses a pole before')])
 @pytest.mark.parametrize('verb', ['simulate', 'predict'])
 def test_a_latitude_past_the_pole_is_refused(verb, values, at, tmp_path, capsys):
-    """The motion is rejected before the run, wherever in it the pole is passed."""
+    """A motion that passes the pole at any time is refused before the run."""
     more = ['-o', str(tmp_path / 'run')] if verb == 'simulate' else []
     assert main([verb, *more, *words(values)]) == 2
     said = capsys.readouterr().err
@@ -40,7 +40,7 @@ def test_a_latitude_past_the_pole_is_refused(verb, values, at, tmp_path, capsys)
 
 
 def test_a_motion_near_the_pole_is_flown():
-    """A motion of 6 km from latitude 89.9 degrees does not reach the pole and is accepted."""
+    """A motion of 6 km that starts at latitude 89.9 deg, 11 km from the pole, is accepted."""
     chosen = settings({**POLAR, 'motion.kind': 'racetrack'}).motion_generator
     motion = make_motion(chosen.motion, chosen.datum, chosen.earth)
     t_ns = np.arange(400) * SECOND
@@ -72,7 +72,7 @@ def test_half_a_turn_a_sample_is_refused(tmp_path, capsys):
 
 @pytest.mark.parametrize('block', [True, False])
 def test_half_a_turn_a_sample_on_a_stream_of_truth(block):
-    """The truth at 1000 Hz turns by 0.1 rad per step, but the IMU at 25 Hz by 4 rad: rejected."""
+    """A truth at 1000 Hz turns by 0.1 rad per step, but by 4 rad per sample at 25 Hz: refused."""
     chosen = settings({**SPINNING, 'rate_hz': 1000.0, 'duration_s': 0.1}, source='stream')
     slow = settings(SPINNING, source='stream').imu_sensor
     generator = chosen.motion_generator
@@ -87,7 +87,7 @@ def test_half_a_turn_a_sample_on_a_stream_of_truth(block):
 
 
 def test_a_fast_rotation_is_read_right():
-    """With 20 turns per second at 1 kHz the readings are right, for both kinds of output."""
+    """At 20 turns per second and 1 kHz the readings are right, for both kinds of output."""
     fast = {**SPINNING, 'motion.two_axis.psi_rate_rad_s': 40.0 * math.pi}
     for rate_hz, output in ((1000.0, 'rotation_vector'), (25.0, 'integrated')):
         chosen = settings({**fast, 'rate_hz': rate_hz, 'output': output, 'input': output},
@@ -96,16 +96,17 @@ def test_a_fast_rotation_is_read_right():
         generator = chosen.motion_generator
         motion = make_motion(generator.motion, generator.datum, generator.earth)
         omega = np.concatenate([b.omega for b in imu_blocks(chosen, motion)])[1:]
-        # The Earth adds at most 7.3e-5 rad/s.
+        # The rotation of the Earth adds at most 7.3e-5 rad/s.
         assert np.abs(omega[:, 2] - 40.0 * math.pi).max() < 1e-4
 
 
 @pytest.mark.parametrize('gravity', ['free_air', 'second_order'])
 def test_the_physics_holds_at_the_limits(gravity):
     """
-    A minute at 7.9 km/s and 400 km height, and 20 turns per second at 500 km, closes to 1 mm.
+    A minute at 7.9 km/s, or at 20 turns per second, closes to 1 mm.
 
-    The position rule is of second order in the step, as for any flight.
+    The flights are at 400 km and 500 km of height. The position rule is of second order in the
+    step, as for any flight.
     """
     route = {'motion.kind': 'route', 'motion.route.points.latitude_deg': (50.0, 55.0, 56.0),
              'motion.route.points.longitude_deg': (0.0, 20.0, 40.0), 'vertical.channel': 'free',

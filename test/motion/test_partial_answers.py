@@ -1,4 +1,4 @@
-"""Attitude and specific force alone are those of the whole truth, for any motion."""
+"""Attitude and specific force requested alone equal those of the whole truth, for any motion."""
 
 import ins_sim
 from ins_sim.core.attitude import quaternion
@@ -33,7 +33,7 @@ def check(motion):
 
 @pytest.mark.parametrize('kind', [kind for kind in MOTIONS if kind != 'recording'])
 def test_every_motion_of_the_table(kind):
-    """Every motion of the table, at instants requested alone or with others."""
+    """Attitude and force of every motion of the table are right for any set of instants."""
     if kind == 'route':
         motion = ins_sim.open_motion(ins_sim.read_settings('route_flight'))
     elif kind == 'guided':
@@ -45,7 +45,7 @@ def test_every_motion_of_the_table(kind):
 
 
 def test_a_recorded_flight(flown):
-    """A recorded flight, which overrides the methods of closed-form motions."""
+    """Attitude and force are right for a recorded flight, which overrides the methods."""
     check(flown[0])
 
 
@@ -62,14 +62,14 @@ class AtAlone(ins_sim.Motion):
 
 
 class Turned(type(make_motion(MotionSettings(), Datum(), Earth()))):
-    """A motion in closed form whose ``at`` is that of another motion."""
+    """A closed-form motion whose ``at`` is replaced by that of another motion."""
 
     at = AtAlone.at
     _inner = make_motion(MotionSettings(kind='aggressive'), Datum(), Earth())
 
 
 def test_a_motion_of_ones_own_with_at_alone():
-    """All answers are derived from ``at``, even if the base class has faster ones."""
+    """All answers are derived from a user's ``at``, even if the base class has faster methods."""
     check(AtAlone(make_motion(MotionSettings(kind='cruise'), Datum(), Earth())))
     closed = make_motion(MotionSettings(kind='two_axis'), Datum(), Earth())
     closed.__class__ = Turned
@@ -77,7 +77,7 @@ def test_a_motion_of_ones_own_with_at_alone():
 
 
 def test_an_attitude_made_of_derivatives():
-    """The order that is lost by the derivatives in the attitude is determined automatically."""
+    """The number of orders lost by derivatives in an attitude is determined automatically."""
     def pose(t):
         level = t.constant(0.0)
         angle = taylor.sin(t * 0.3)

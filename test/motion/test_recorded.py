@@ -1,4 +1,4 @@
-"""Recorded flights: what the splines must reproduce, and what must not affect them."""
+"""Recorded flights: what the splines must reproduce, and what must not change them."""
 
 import math
 
@@ -37,7 +37,7 @@ def test_spline_passes_through_every_recorded_sample(shared_data, name):
 
 @pytest.mark.parametrize('name', FLIGHTS)
 def test_rate_and_acceleration_are_continuous_at_the_samples(shared_data, name):
-    """C2: across a sample the rate changes by its slope (times 2 ns), the slope not at all."""
+    """The rate is C1 at samples: across 2 ns it changes by its slope, and the slope is equal."""
     motion = load(shared_data / 'flights' / name, on_gap=FLIGHTS[name], rotation=False)
     knots = motion._knots[20:-20]
     d = 1000
@@ -58,7 +58,7 @@ def test_rate_and_velocity_are_those_of_the_pose(shared_data, name):
     d = 10 ** 6
     a, x, b = (motion.at(t_ns + k * d) for k in (-1, 0, 1))
     moved = (Rotation.from_quat(a.q_nb).inv() * Rotation.from_quat(b.q_nb)).as_rotvec()
-    # omega_in for a non-rotating Earth: the transport rate only.
+    # omega_in for a non-rotating Earth is the transport rate only.
     transport = Rotation.from_quat(x.q_nb).inv().apply(np.stack([
         -(b.lat - a.lat), (b.lon - a.lon) * np.cos(x.lat), (b.lon - a.lon) * np.sin(x.lat)], -1))
     rate = (moved + transport) / (2.0 * d * 1e-9)
@@ -70,7 +70,7 @@ def test_rate_and_velocity_are_those_of_the_pose(shared_data, name):
 
 
 def test_recorded_closed_form_converges(tmp_path):
-    """Force errs by h^4 and rate by h^3: halving h divides the errors by 16 and 8."""
+    """The force errs by h^4 and the rate by h^3: halving h divides the errors by 16 and 8."""
     motion = make_motion(MotionSettings(kind='aggressive'), Datum(),
                          Earth())
     t_ns = np.linspace(0.0, 30e9, 997).astype(np.int64)
@@ -88,7 +88,7 @@ def test_recorded_closed_form_converges(tmp_path):
 
 
 def test_angles_are_the_recorders(tmp_path):
-    """Heading clockwise from north, nose up, right wing down, one at a time; FLU to ENU."""
+    """Recorded angles: heading clockwise from north, nose up, right wing down; FLU to ENU."""
     t = np.arange(101) * 0.1
     for angles, body, world in (({'heading': 90.0}, (1, 0, 0), (1, 0, 0)),
                                 ({'heading': 0.0}, (1, 0, 0), (0, 1, 0)),
@@ -102,6 +102,7 @@ def test_angles_are_the_recorders(tmp_path):
 @profile(max_examples=40, deadline=None)
 @given(cuts=st.lists(st.integers(0, 400), max_size=8))
 def test_any_cutting_gives_the_same_bits(flown, cuts):
+    """Truth of a recorded flight computed in random blocks has the bits of the whole."""
     motion = flown[0]
     t_ns = np.linspace(-3e9, 17e9, 401).astype(np.int64)
     whole = motion.at(t_ns)
@@ -110,6 +111,7 @@ def test_any_cutting_gives_the_same_bits(flown, cuts):
 
 
 def test_long_runs_are_the_same_bits_as_single_instants(flown):
+    """Truth at 40001 instants has the bits of truth at single instants."""
     motion = flown[0]
     t_ns = np.linspace(-3e9, 17e9, 40001).astype(np.int64)
     whole = motion.at(t_ns)

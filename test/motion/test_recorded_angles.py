@@ -1,4 +1,4 @@
-"""Recordings with wound-up angles, sentinels among angles, and stamps years apart."""
+"""Recordings with angles beyond a turn, invalid angles, and stamps years apart."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize('name, beyond', [('roll_deg', 1.0 + 360.0), ('heading_deg', 3.0 + 720.0),
                                           ('heading_deg', 3.0 - 1080.0), ('pitch_deg', 362.0)])
 def test_angles_that_turned_on_are_brought_back(folder, name, beyond):
-    """Whole turns are subtracted, with a warning; the flight is the same."""
+    """Whole turns are subtracted from angles, with a warning; the flight stays the same."""
     table = rows()
     plain = accepted(save(folder / 'plain.csv', table))
     for row in table[20:30]:
@@ -27,7 +27,7 @@ def test_angles_that_turned_on_are_brought_back(folder, name, beyond):
 
 @pytest.mark.parametrize('start', [179.9995, -0.0005])
 def test_longitudes_of_0_to_360_are_those_of_180_west_to_east(folder, start):
-    """Both conventions give the same flight over the 180 deg and the Greenwich meridian."""
+    """Longitudes of 0 to 360 deg and of +-180 deg give the same flight over 0 and 180 deg."""
     table, column = rows(), COLUMNS.index('lon_deg')
     motions = []
     for name, low in (('west', -180.0), ('east', 0.0)):
@@ -36,7 +36,7 @@ def test_longitudes_of_0_to_360_are_those_of_180_west_to_east(folder, start):
         motions.append(accepted(save(folder / f'{name}.csv', table)))
     t_ns = 1_000_000_000 * np.arange(int(motions[0].end_s))
     a, b = (motion.at(t_ns) for motion in motions)
-    # 9 decimals of a degree, and 360 degrees in 16 digits.
+    # 9 decimals of a degree, and 360 deg in 16 digits.
     assert np.abs((a.lon - b.lon + 1.0) % (2.0 * np.pi) - 1.0).max() < 1e-12
     assert np.abs(a.v_n - b.v_n).max() < 1e-4
 
@@ -44,7 +44,7 @@ def test_longitudes_of_0_to_360_are_those_of_180_west_to_east(folder, start):
 @pytest.mark.parametrize('name, text', [('roll_deg', '-9999'), ('heading_deg', '99999'),
                                         ('pitch_deg', '100'), ('pitch_deg', '-9999')])
 def test_sentinels_and_pitches_beyond_the_vertical_are_refused(folder, name, text):
-    """-9999 is not an angle, and 100 degrees of pitch cannot be reduced by whole turns."""
+    """-9999 as an angle, and a pitch of 100 deg, are refused: no whole turn makes them valid."""
     table = rows()
     table[7][COLUMNS.index(name)] = text
     assert f"line 9 (t_s = '0.700'): {name} is '{text}'" in refusal(
@@ -52,6 +52,6 @@ def test_sentinels_and_pitches_beyond_the_vertical_are_refused(folder, name, tex
 
 
 def test_steps_of_years_are_refused_before_anything_is_made_of_them(folder):
-    """Rows 1e8 s apart are rejected: at 100 Hz they would take 440 GiB."""
+    """Rows 1e8 s apart are refused: at 100 Hz they would need 440 GiB."""
     table = [[f'{k}e8', *row[1:]] for k, row in enumerate(rows(21))]
     assert 'holds a row every 1e+08 s over 2e+09 s' in refusal(save(folder / 'years.csv', table))

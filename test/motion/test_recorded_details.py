@@ -1,4 +1,4 @@
-"""Recorded flights in detail: wraps, smoothing, epochs, rounding of the file."""
+"""Recorded flights in detail: wrapped angles, smoothing, epochs, rounding of the file."""
 
 import gzip
 import math
@@ -19,6 +19,7 @@ FLIGHTS = {'cruise_gv_acclip_rf01.csv.gz': 'refuse', 'uavcircuit_umn_thor_fl75.c
 
 @pytest.mark.parametrize('name', FLIGHTS)
 def test_warnings_name_what_the_rounding_does(shared_data, name):
+    """Real flights give warnings about rounding, cuts, and position steps of 3.18 m."""
     warnings = ' '.join(load(shared_data / 'flights' / name, on_gap=FLIGHTS[name]).warnings)
     assert 'differentiated twice' in warnings
     assert ('cut there' in warnings) == (FLIGHTS[name] == 'cut')
@@ -28,6 +29,7 @@ def test_warnings_name_what_the_rounding_does(shared_data, name):
 
 
 def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
+    """Seven gaps of a real flight are refused with their times; on_gap cut flies a part."""
     path = shared_data / 'flights' / 'uavaero_proto_flt09.csv'
     with pytest.raises(ValueError) as refusal:
         load(path)
@@ -44,7 +46,7 @@ def test_gaps_of_a_real_flight_are_refused_with_their_times(shared_data):
 
 
 def test_wraps_of_heading_roll_and_longitude_change_nothing(tmp_path):
-    """A turn through north, a roll through 180 deg and a flight over the date line are smooth."""
+    """Through north, a roll of 180 deg and the date line the flight is smooth."""
     t = np.arange(201) * 0.1
     heading, roll, lon = 350.0 + 2.0 * t, 170.0 + t, 179.99 + 0.002 * t
     plain = load(write(tmp_path / 'plain.csv', t, lon=lon, roll=0.0, heading=heading % 360.0))
@@ -80,6 +82,7 @@ def test_smoothing_is_a_boxcar(tmp_path, window_s):
 
 
 def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
+    """Smoothing over 6 s at 90 deg/s, more than a whole turn, is refused."""
     t = np.arange(601) * 0.1
     path = write(tmp_path / 'r.csv', t, heading=(90.0 * t) % 360.0)
     with pytest.raises(ValueError, match='smoothing_s is 6 s.*turns more than once'):
@@ -88,7 +91,7 @@ def test_smoothing_over_a_whole_turn_is_refused(tmp_path):
 
 @pytest.mark.parametrize('largest', (1e-3, 0.1, 1.0, 3.0, 6.0))
 def test_exponential_series_is_the_rotation_and_its_rate(largest):
-    """The rotation agrees with SciPy to rounding, the rate with q' = q (0, omega) / 2."""
+    """The exponential series agrees with SciPy's rotation and the rate with q' = q (0, w) / 2."""
     rng = np.random.default_rng(2)
     r = rng.standard_normal((3, 500))
     r *= largest * rng.random(500) / np.sqrt((r * r).sum(0))
@@ -108,6 +111,7 @@ def test_exponential_series_is_the_rotation_and_its_rate(largest):
 
 
 def test_gzip_is_the_plain_file(tmp_path, flown):
+    """A gzipped recording gives the truth of the plain file, to the bit."""
     data = open(flown[0].path, 'rb').read()
     packed = tmp_path / 'aggressive.csv.gz'
     packed.write_bytes(gzip.compress(data))
@@ -116,7 +120,7 @@ def test_gzip_is_the_plain_file(tmp_path, flown):
 
 
 def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
-    """Stamps are parsed as decimals: a float of 1.7e9 s would resolve only 0.24 us."""
+    """Stamps are parsed as decimals: as a float 1.7e9 s would resolve only 0.24 us."""
     stamps = [f'17000000{k // 10:02d}.{k % 10}00000001' for k in range(101)]
     lines = [','.join(COLUMNS)] + [f'{s},55,37,100,0,0,0,,,' for s in stamps]
     path = tmp_path / 'r.csv'
@@ -126,6 +130,7 @@ def test_stamps_of_an_epoch_keep_their_nanoseconds(tmp_path):
 
 
 def test_outside_the_recording_is_a_sentence(flown):
+    """An instant outside -3 to 17 s raises a ValueError with these limits."""
     motion = flown[0]
     assert motion.end_s == pytest.approx(14.0) and motion.period_s is None
     assert len(motion.at(np.array([], dtype=np.int64))) == 0
@@ -139,7 +144,7 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
     """The predicted force noise of rounded heights in level flight is right to 5 % (n = 4000)."""
     rng = np.random.default_rng(1)
     t = np.arange(4000) * 0.1
-    # A slow random wander decorrelates the rounding; its own acceleration is 1e-4 m/s^2.
+    # A slow random walk decorrelates the rounding; its own acceleration is 1e-4 m/s^2.
     height = np.round(100.0 + 3.0 * np.sin(0.005 * t) + 2.0 * np.sin(0.0037 * t + 1.0)
                       + 0.3 * rng.standard_normal(4000), 1)
     motion = load(write(tmp_path / 'r.csv', t, height=height, digits='.15g'))
@@ -153,7 +158,7 @@ def test_rounding_noise_is_what_rounding_does(tmp_path):
 
 
 def test_unrounded_flight_draws_no_warning(flown, tmp_path):
-    """No warning either for few decimals that are exact: 10 m/s written to 0.1 m at 100 Hz."""
+    """No warning without rounding, nor for few exact decimals: 10 m/s to 0.1 m at 100 Hz."""
     assert flown[0].warnings == []
     t = np.arange(1001) * 0.01
     assert load(write(tmp_path / 'r.csv', t, height=10.0 * t, digits='.12g')).warnings == []
@@ -169,7 +174,7 @@ def test_single_precision_is_seen_through_its_decimals(tmp_path):
 
 
 def test_spline_gain_is_the_gain_of_the_spline():
-    """The gain is the root of the sum of squares of the spline's response to an impulse."""
+    """The noise gain of the spline is the root of the sum of squares of its impulse response."""
     from scipy.interpolate import make_interp_spline
     t = np.arange(201.0)
     impulse = make_interp_spline(t, (t == 100.0).astype(float), k=5)

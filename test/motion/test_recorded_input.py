@@ -1,4 +1,4 @@
-"""Bad recordings: each is refused in one sentence that says where, what, and what was expected."""
+"""Invalid recordings are refused with one message: where, what is wrong, what is expected."""
 
 import gzip
 import math
@@ -18,13 +18,15 @@ def folder(tmp_path_factory):
 
 
 def test_the_flight_all_others_are_made_of_is_accepted(folder):
+    """The valid flight, from which all others here are derived, lasts 4 s without warnings."""
     motion = accepted(save(folder / 'good.csv', rows()))
     assert motion.end_s == pytest.approx(4.0) and motion.warnings == []
 
 
-# The file.
+# Tests of the file.
 
 def test_no_path_no_file_no_permission(folder):
+    """An empty path, a missing file, a folder and an unreadable file are refused."""
     assert "motion.recording.path is ''" in refusal('')
     assert 'does not exist; expected a CSV file' in refusal(folder / 'nowhere.csv')
     assert 'Is a directory' in refusal(folder)
@@ -36,6 +38,7 @@ def test_no_path_no_file_no_permission(folder):
 
 
 def test_empty_and_header_only(folder):
+    """An empty file, and one with a header only, are refused."""
     path = folder / 'empty.csv'
     for content in ('', '\n\n', ' \r\n', '\ufeff'):
         path.write_text(content, encoding='utf-8')
@@ -44,6 +47,7 @@ def test_empty_and_header_only(folder):
 
 
 def test_wrong_encoding_and_broken_gzip(folder):
+    """Text that is not UTF-8, and corrupt gzip, are refused with line or cause."""
     path = folder / 'coded.csv'
     text = save(folder / 'good.csv', rows()).read_text()
     path.write_bytes((text + '\n°').encode('latin-1'))
@@ -63,6 +67,7 @@ def test_wrong_encoding_and_broken_gzip(folder):
 
 
 def test_byte_order_mark_crlf_blank_lines_and_spaces_are_accepted(folder):
+    """A byte order mark, CRLF, blank lines and spaces do not change the values."""
     path = folder / 'dressed.csv'
     text = save(folder / 'good.csv', rows()).read_text()
     path.write_bytes(b'\xef\xbb\xbf' + text.replace(',', ' , ').replace('\n', '\r\n\r\n').encode())
@@ -77,14 +82,16 @@ def test_byte_order_mark_crlf_blank_lines_and_spaces_are_accepted(folder):
                           lambda s: (HEADER + '\n' + s).encode()),
                       st.binary(max_size=60).map(gzip.compress)))
 def test_any_bytes_end_in_a_sentence(folder, data):
+    """Any bytes give a message with the path, or about start_s."""
     path = folder / 'fuzz.csv'
     path.write_bytes(data)
     assert str(path) in refusal(path) or 'start_s' in refusal(path)
 
 
-# The columns.
+# Tests of the columns.
 
 def test_columns(folder):
+    """Unknown, missing, double and additional columns are reported; any order is read."""
     path = folder / 'columns.csv'
     table = rows()
     sentence = refusal(save(path, table, HEADER.replace('lat_deg', 'lat_degs')))
@@ -92,7 +99,7 @@ def test_columns(folder):
     assert 'it has no column lat_deg; expected' in sentence
     spare = accepted(save(path, [r + ['1'] for r in table], HEADER + ',wind'))
     assert '1 columns are not used: wind' in spare.warnings[0]
-    # velocities are not used, and need not be there
+    # Velocities are not used and may be absent.
     assert not accepted(save(path, [r[:-1] for r in table], HEADER[:-7])).warnings
     assert not accepted(save(path, [r[:-3] for r in table], HEADER[:-21])).warnings
     assert 'column t_s occurs 2 times' in refusal(save(path, [r + ['1'] for r in table],
@@ -108,19 +115,21 @@ def test_columns(folder):
 
 @pytest.mark.parametrize('fields', (9, 11, 1))
 def test_number_of_fields(folder, fields):
+    """A row with 9, 11 or 1 of 10 fields is refused with line and time."""
     table = rows()
     table[40] = (table[40] + ['0'])[:fields]
     assert f"line 42 (t_s = '4.000'): {fields} fields; expected 10" in refusal(
         save(folder / 'fields.csv', table))
 
 
-# The values.
+# Tests of the values.
 
 @profile(max_examples=60, deadline=None)
 @given(row=st.integers(0, 100), name=st.sampled_from(COLUMNS),
        text=st.sampled_from(('x', 'nan', 'NaN', 'inf', '-Infinity', '1_0', '0x10', '--1', '1e999',
                              '1.0.0', '')))
 def test_what_is_no_finite_number_is_refused_with_its_place(folder, row, name, text):
+    """A field that is not a finite number is refused with line, time and column."""
     if not text and name.startswith('v'):
         return
     table = rows()
@@ -134,6 +143,7 @@ def test_what_is_no_finite_number_is_refused_with_its_place(folder, row, name, t
 @given(row=st.integers(0, 100), name=st.sampled_from(sorted(set(USED) - set(WRAPPED))),
        above=st.booleans(), beyond=st.floats(1e-6, 1e4))
 def test_angles_and_heights_out_of_range_are_refused(folder, row, name, above, beyond):
+    """An angle or height out of range is refused with line, time, value and range."""
     low, high = USED[name]
     value = high + beyond if above else low - beyond
     table = rows()
@@ -143,11 +153,12 @@ def test_angles_and_heights_out_of_range_are_refused(folder, row, name, above, b
     assert f'expected a number {low:g}..{high:g}' in sentence
 
 
-# The stamps.
+# Tests of the stamps.
 
 @profile(max_examples=40, deadline=None)
 @given(row=st.integers(1, 100), back=st.integers(0, 50))
 def test_stamps_that_do_not_advance_are_refused_with_their_time(folder, row, back):
+    """A stamp that is repeated or goes back is refused with its time."""
     table = rows()
     earlier = table[max(row - 1 - back, 0)][0]
     for k, later in enumerate(table[row:]):
@@ -158,6 +169,7 @@ def test_stamps_that_do_not_advance_are_refused_with_their_time(folder, row, bac
 
 
 def test_stamps_that_all_stand_still(folder):
+    """If all stamps are equal, some are listed with the number of the others."""
     table = rows()
     for row in table:
         row[0] = '5'
@@ -169,6 +181,7 @@ def test_stamps_that_all_stand_still(folder):
 @profile(max_examples=40, deadline=None)
 @given(row=st.integers(1, 100), intervals=st.floats(2.6, 500.0))
 def test_gaps_are_refused_with_their_time(folder, row, intervals):
+    """A gap of more than 2.5 times the median interval is refused with its time."""
     table = rows()
     for k in range(row, len(table)):
         table[k][0] = f'{0.1 * (k - 1 + intervals):.4f}'
@@ -178,6 +191,7 @@ def test_gaps_are_refused_with_their_time(folder, row, intervals):
 
 
 def test_missing_row_is_no_gap(folder):
+    """One missing row is accepted; two in succession are a gap."""
     table = rows()
     del table[50]
     accepted(save(folder / 'one.csv', table))
@@ -185,13 +199,17 @@ def test_missing_row_is_no_gap(folder):
     assert '1 gaps' in refusal(save(folder / 'two.csv', table))
 
 
-# Jumps.
+# Tests of jumps.
 
 @profile(max_examples=40, deadline=None)
 @given(row=st.integers(1, 100), metres=st.floats(21.0, 1e5), name=st.sampled_from(
     ('lat_deg', 'lon_deg', 'height_m')))
 def test_position_jumps_are_refused_with_their_time(folder, row, metres, name):
-    """At 10 Hz the limit is the larger of 20 m and 500 m/s^2 (0.1 s)^2 = 5 m."""
+    """
+    A position jump is refused with its time; the limit at 10 Hz is 20 m.
+
+    It is the larger of 20 m and 500 m/s^2 (0.1 s)^2 = 5 m.
+    """
     scale = {'lat_deg': 111e3, 'lon_deg': 111e3 * math.cos(math.radians(55.0)), 'height_m': 1.0}
     k = COLUMNS.index(name)
     table = rows()
@@ -203,6 +221,7 @@ def test_position_jumps_are_refused_with_their_time(folder, row, metres, name):
 
 
 def test_spikes_resets_and_turns(folder):
+    """Position spikes, heading resets and turns of 150 deg per row are impossible jumps."""
     path = folder / 'turn.csv'
     table = rows()
     table[50][1] = '54.0'
@@ -218,6 +237,7 @@ def test_spikes_resets_and_turns(folder):
 
 
 def test_correction_steps_are_reported_not_refused(folder):
+    """A step of 15 m in height gives a warning with its size and time."""
     table = rows()
     for row in table[50:]:
         row[3] = '115.0'
@@ -227,7 +247,11 @@ def test_correction_steps_are_reported_not_refused(folder):
 
 @pytest.mark.parametrize('fault', ('gap', 'jump', 'back'))
 def test_cut_keeps_the_part_that_holds_start(folder, fault):
-    """100 s at 10 Hz with a fault at 60 s: 3 s at both ends of either part are kept as pads."""
+    """
+    on_gap cut keeps the part of 100 s that contains start_s, less 3 s of padding at both ends.
+
+    The recording has 10 Hz and a fault at 60 s.
+    """
     table = rows(1001)
     for k, row in enumerate(table[600:], 600):
         if fault == 'jump':
@@ -243,9 +267,10 @@ def test_cut_keeps_the_part_that_holds_start(folder, fault):
         {'gap': 105.0, 'jump': 100.0, 'back': 95.0}[fault] - 83.0, abs=1e-6)
 
 
-# The extent.
+# Tests of the extent.
 
 def test_too_short(folder):
+    """A flight of less than 6.1 s, or of fewer than 8 rows, is refused."""
     path = folder / 'short.csv'
     assert 'holds 61 rows over 6 s' in refusal(save(path, rows(61)))
     accepted(save(path, rows(62)))
@@ -254,6 +279,7 @@ def test_too_short(folder):
 
 
 def test_start_outside(folder):
+    """start_s outside of 3 to 7 s is refused with these limits."""
     path = save(folder / 'good.csv', rows())
     for start_s in (0.0, 2.9, 7.0, 10.0, 1e6, -1.0):
         assert (f'start_s is {start_s:g} s; expected 3 to 7 s'

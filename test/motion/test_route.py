@@ -14,7 +14,7 @@ from ins_sim.core.numerics.units import STANDARD_GRAVITY
 from ins_sim.core.timeseries.histories import Truth
 
 AIRSPEED = 200.0
-# Central differences of sixth order: first and second derivative.
+# Central differences of sixth order, for the first and the second derivative.
 FIRST = np.array((-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0)) / 60.0
 SECOND = np.array((2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0)) / 180.0
 
@@ -30,7 +30,7 @@ def local(truth):
     # The same with gusts up to 8 rad/s: 0.16 m/s x 8^6 h^6 / 140, x 8^7 h^6 / 560.
     ((ROUGH,), 0.05, 5e-6, 2e-5, 3e-6)], ids=('calm', 'rough'))
 def test_differences_of_the_pose(groups, h_s, v_bound, f_bound, rate_bound):
-    """Truth agrees with differences of Earth-fixed positions and attitudes."""
+    """The truth agrees with differences of Earth-fixed positions and attitudes."""
     motion = route(*groups)
     rng = np.random.default_rng(3)
     t = rng.uniform(1.0, motion.end_s, 2000)
@@ -69,7 +69,7 @@ def test_differences_of_the_pose(groups, h_s, v_bound, f_bound, rate_bound):
 
 
 def test_truth_has_no_steps():
-    """Velocity, force, attitude and rate are continuous at all knots of turns, the rates C1."""
+    """Velocity, force, attitude and rate are continuous at the joints of turns, the rate C1."""
     motion = route(WIND)
     for start, end in motion.turns:
         for joint in (start, start + 5.0, end - 5.0, end):
@@ -79,14 +79,14 @@ def test_truth_has_no_steps():
             assert np.abs(np.diff(truth.v_n, axis=0)).max() < 1e-8
             assert np.abs(np.diff(truth.f_ib_b, axis=0)).max() < 1e-6
             assert np.abs(np.diff(truth.omega_ib_b, axis=0)).max() < 1e-9
-            # In 2 ms the slope of the rate changes by its own slope, 0.2 rad/s^3, times 2 ms.
+            # In 2 ms the slope of the rate changes by its derivative, 0.2 rad/s^3, times 2 ms.
             slopes = [np.diff(motion.at(np.array((t, t + 1000000))).omega_ib_b, axis=0) / 1e-3
                       for t in (t_ns[0] - 1000000, t_ns[-1])]
             assert np.abs(slopes[1] - slopes[0]).max() < 2e-3
 
 
 def test_calm_legs_are_great_circles_at_constant_airspeed():
-    """Without weave and gusts Z is zero on legs, and the airspeed is constant also in turns."""
+    """Without weave and gusts Z is zero on legs, and the airspeed is constant, also in turns."""
     motion = route(WIND)
     t_ns = instants(motion, 0.1)
     truth, free = motion.at(t_ns), on_legs(motion, t_ns)
@@ -103,13 +103,17 @@ def test_calm_legs_are_great_circles_at_constant_airspeed():
 
 
 def test_the_flight_starts_and_arrives_at_its_points():
-    """From the first point at zero to the last at end_s; the motion extends beyond both."""
+    """
+    The flight is at the first point at time zero and at the last point at end_s.
+
+    The motion is defined before and after.
+    """
     motion = route(WIND, WEAVE)
     ends = motion.at(np.array((0, round(motion.end_s * 1e9)), dtype=np.int64))
     x = [leg.to_xz(ends.lat[k], ends.lon[k]) for k, leg in ((0, motion.route.legs[0]),
                                                             (1, motion.route.legs[-1]))]
     assert x[0] == pytest.approx((0.0, 0.0), abs=1e-7)
-    # The weave displaces by 14 m to the side, and by the crab ahead at its phase at the arrival.
+    # The weave displaces by 14 m to the side, and by the drift ahead at its phase on arrival.
     assert x[1] == pytest.approx((motion.route.legs[-1].length, 0.0), abs=14.0)
     calm = route(WIND)
     end_ns = round(calm.end_s * 1e9)
@@ -122,7 +126,11 @@ def test_the_flight_starts_and_arrives_at_its_points():
 
 
 def test_turns_are_coordinated_at_their_rate():
-    """In the constant part: 1.2 deg/s of heading, bank atan(V psi'/g), nearly no side force."""
+    """
+    Turns are coordinated: 1.2 deg/s, bank atan(V psi'/g), and nearly no side force.
+
+    This holds in the part of constant rate.
+    """
     motion = route(attack_deg=0.0)
     for start, end in motion.turns:
         t_ns = np.round(np.arange(start, end, 0.01) * 1e9).astype(np.int64)
@@ -165,7 +173,7 @@ def test_the_nose_is_in_the_wind():
 
 
 def test_wind_triangle():
-    """North with wind from the west: drift asin(8/200), ground speed sqrt(200^2 - 8^2)."""
+    """North with wind from the west: drift angle asin(8/200), ground speed sqrt(200^2 - 8^2)."""
     motion = route({'points.latitude_deg': (55.0, 56.0), 'points.longitude_deg': (37.0, 37.0)},
                    wind_m_s=8.0, wind_from_deg=270.0, attack_deg=0.0)
     truth = motion.at(instants(motion, 1.0))
@@ -182,9 +190,9 @@ def test_wind_triangle():
 
 
 def test_the_weave_is_flown():
-    """Heading +-1 deg and track +-V A/w with a period of 25 s, at constant airspeed."""
+    """Weave: heading +-1 deg, track +-V A/w, period 25 s, at constant airspeed."""
     points = {'points.latitude_deg': (0.0, 0.0), 'points.longitude_deg': (37.0, 39.0)}
-    # With an angle of attack the banking would turn the nose as well.
+    # With an angle of attack banking would also turn the nose.
     motion = route(points, WEAVE, attack_deg=0.0)
     t_ns = instants(motion, 0.01)
     truth = motion.at(t_ns)
@@ -207,7 +215,7 @@ def test_the_weave_is_flown():
 
 
 def test_a_slipping_weave_swings_the_nose_and_not_the_track():
-    """Heading +-1 deg with a straight track: the nose slips by the weave, without bank."""
+    """Slipping weave: heading +-1 deg, track straight, no bank."""
     points = {'points.latitude_deg': (0.0, 0.0), 'points.longitude_deg': (37.0, 38.0)}
     motion, calm = (route(points, weave, attack_deg=0.0) for weave in (
         {**WEAVE, 'weave': 'slipping'}, {}))
@@ -227,7 +235,7 @@ def test_a_slipping_weave_swings_the_nose_and_not_the_track():
 
 
 def test_any_cutting_gives_the_same_bits():
-    """Truth in randomly cut blocks has the bits of the whole."""
+    """Truth computed in random blocks has the bits of the whole."""
     motion = route(ROUGH)
     t_ns = instants(motion, 0.05)
     whole = motion.at(t_ns)
@@ -245,7 +253,7 @@ def test_any_cutting_gives_the_same_bits():
        st.floats(0.0, 360.0), st.floats(0.5, 3.0))
 def test_any_route_closes(lat, lon, course, turns, wind, wind_from, rate):
     """
-    With random corners, winds and rates every leg is a great circle and the last point is reached.
+    Any route reaches its last point on great circles, for random corners, winds and rates.
 
     The slowest turn has a radius of up to 25 km. A turn by 150 deg, plus 10 where meridians
     converge, starts r tan(80 deg) = 142 km before its point: two of them fit on a leg of 333 km.
@@ -270,5 +278,5 @@ def test_any_route_closes(lat, lon, course, turns, wind, wind_from, rate):
     last = motion.at(np.array([round(motion.end_s * 1e9)]))
     assert motion.route.legs[-1].to_xz(last.lat, last.lon)[0][0] == pytest.approx(
         motion.route.legs[-1].length, abs=1e-6)
-    # Quaternions keep their sign.
+    # Quaternions keep their sign from sample to sample.
     assert ((truth.q_nb[1:] * truth.q_nb[:-1]).sum(axis=1) > 0.9).all()

@@ -15,7 +15,7 @@ from ins_sim.settings.by_node import AIDING
 from ins_sim.settings.by_node import NODES
 from support.studies import run_offline
 
-# File, lengths of the legs (km), turns (deg); all begin at 55 N 37 E on a course of 30 deg.
+# File, lengths of the legs (km), turns (deg); all start at 55 N 37 E on a course of 30 deg.
 FLIGHTS = [('route_flight', (160, 160, 160, 160), (60, -90, 60)),
            ('gnss_outage_flight', (40, 40, 200, 160, 160, 160), (60, -60, 60, -90, 60))]
 COURSE = 30.0
@@ -33,7 +33,7 @@ def motion_of(settings):
 
 
 def corners(lengths, turns):
-    """Return the turning points (lat, lon), deg with six decimals, as the files were made."""
+    """Return the turning points (lat, lon), deg with six decimals, as the files were generated."""
     geodesic = pytest.importorskip('geographiclib.geodesic').Geodesic(ellipsoid.MEAN_RADIUS, 0.0)
     points, course = [(55.0, 37.0)], COURSE
     for length, turn in zip(lengths, (*turns, 0)):
@@ -47,7 +47,7 @@ def corners(lengths, turns):
 
 @pytest.mark.parametrize('name, lengths, turns', FLIGHTS, ids=('study', 'outage'))
 def test_corners_and_length(name, lengths, turns):
-    """The points in the file have the given lengths and turns; the flight outlasts the run."""
+    """The points of each file have the given legs and turns; the flight outlasts the run."""
     settings = read(name)
     points = settings.motion_generator.motion.route.points
     assert list(zip(points.latitude_deg, points.longitude_deg)) == corners(lengths, turns)
@@ -60,7 +60,7 @@ def test_corners_and_length(name, lengths, turns):
     print(f'\n{name}: turns {np.round(angles, 5).tolist()} deg at {seconds} s, legs '
           f'{[round(leg.length) for leg in legs]} m, arrival {motion.end_s:.1f} s of '
           f'{settings.motion_generator.duration_s:g}')
-    # Six decimals of a degree are 0.06 m, which is 1e-4 deg of the course over 40 km.
+    # Six decimals of a degree are 0.06 m, which is 1e-4 deg of course over 40 km.
     assert angles == pytest.approx(turns, abs=2e-4)
     assert [leg.length for leg in legs] == pytest.approx([1e3 * x for x in lengths], abs=0.1)
     assert motion.end_s >= settings.motion_generator.duration_s
@@ -75,7 +75,7 @@ def _first(leg):
 
 @pytest.mark.parametrize('name', [f[0] for f in FLIGHTS])
 def test_all_nodes_agree_on_the_route(name):
-    """The aided navigator gets the points under the same parameter name."""
+    """The aided navigator reads the points from the same parameter as the generator."""
     nodes = {**NODES, **AIDING}
     built = parameter_files.read_nodes([resources.config(name)], (), nodes)
     motion = built['motion_generator'].motion
@@ -99,13 +99,13 @@ def test_what_the_study_flight_is():
           f'{truth.height.min():.1f} to {truth.height.max():.1f} m')
     assert np.abs(z[free]).max() < 14.0 + 20.0
     assert np.abs(truth.height - 500.0).max() < 20.0
-    # Wind, and three axes of gusts with four standard deviations.
+    # Wind, and three axes of gusts with four standard deviations each.
     assert np.abs(ground - 200.0).max() < 8.0 + 2.0 + 0.3
 
 
 @pytest.mark.slow
 def test_the_study_flight_closes():
-    """With an ideal IMU at 100 Hz the strapdown closes within a centimetre in fifty minutes."""
+    """With an ideal IMU at 100 Hz the strapdown closes to 1 cm in fifty minutes."""
     run = run_offline(read('route_flight', 'source:=motion'))
     position, velocity = (np.abs(getattr(run.errors, name)).max(axis=0)
                           for name in ('position', 'velocity'))

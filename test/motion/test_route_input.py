@@ -1,4 +1,4 @@
-"""Routes that cannot be flown are rejected with one sentence; extreme ones that can are flown."""
+"""Routes that cannot be flown are refused with one message; extreme ones that can are flown."""
 
 from support.flown import instants, on_legs, route, WIND
 import numpy as np
@@ -9,7 +9,7 @@ from support.studies import run_offline
 
 
 def points(lat, lon):
-    """Return the settings of turning points, deg."""
+    """Return settings with turning points in deg."""
     return {'points.latitude_deg': tuple(lat), 'points.longitude_deg': tuple(lon)}
 
 
@@ -37,7 +37,7 @@ BAD = [
 
 @pytest.mark.parametrize('values, sentence', BAD)
 def test_what_cannot_be_flown(values, sentence):
-    """One sentence that names key, value and expectation."""
+    """A route that cannot be flown gives one message with key, value and expectation."""
     with pytest.raises(ValueError) as error:
         route(values)
     assert sentence in str(error.value)
@@ -45,7 +45,7 @@ def test_what_cannot_be_flown(values, sentence):
 
 
 def test_no_run_goes_beyond_the_arrival():
-    """The sentence gives the time."""
+    """A run beyond the arrival is refused; the message states the time of the arrival."""
     settings = parameter_files.read([], ['motion.kind:=route', 'duration_s:=2000.0'])
     with pytest.raises(ValueError, match=r'start_s \+ duration_s is 2000 s; expected at most 6.* '
                        's, the arrival at the last turning point'):
@@ -53,8 +53,8 @@ def test_no_run_goes_beyond_the_arrival():
 
 
 @pytest.mark.parametrize('values', [
-    # across the date line at high latitude; a bend of a thousandth of a degree, and none; nearly
-    # back; slow, in a wind; fast
+    # In the order of the ids: across the date line at high latitude; almost straight and straight;
+    # nearly back; slow in wind; fast.
     {**points((87.0, 88.5, 87.0), (150.0, 179.0, -150.0)), **WIND},
     {**points((55.0, 55.9, 56.80001), (37.0, 37.0, 37.0))},
     {**points((55.0, 55.9, 56.8), (37.0, 37.00001, 37.0))},
@@ -66,7 +66,7 @@ def test_no_run_goes_beyond_the_arrival():
      'turn_rate_deg_s': 0.5, 'roll_in_s': 20.0, 'height_m': 20000.0}],
     ids=('date line', 'straight', 'slight bend', 'equator', 'nearly back', 'slow', 'fast'))
 def test_what_can_be_flown(values):
-    """On the great circles at the airspeed, and the velocity is that of the positions."""
+    """Extreme routes have great circles, constant airspeed, and their points in order."""
     motion = route(values)
     t_ns = instants(motion, 0.05)
     truth = motion.at(t_ns)
@@ -78,10 +78,10 @@ def test_what_can_be_flown(values):
     rate = np.abs(np.diff(truth.v_n, axis=0)).max() / 0.05
     print(f'\n{len(motion.turns)} turns, {motion.end_s:.0f} s: |Z| {np.abs(z[free]).max():.1e} m, '
           f'airspeed {v:.6f} within {np.abs(speed - v).max():.1e} m/s, slope {rate:.2f} m/s^2')
-    # a few roundings of radians
+    # A few roundings of radians.
     assert np.abs(z[free]).max() < 2e-8
     assert np.abs(speed - v).max() < 1e-7 * v
-    # the heading turns by no more than its rate, the local axes by V/R0 tan(88.5 deg)
+    # The heading turns by no more than its rate, the local axes by V/R0 tan(88.5 deg).
     assert ((truth.q_nb[1:] * truth.q_nb[:-1]).sum(axis=1) > 0.99).all()
     ahead = np.array(motion.route.starts)[leg] + x
     assert (np.diff(ahead[free]) > 0.0).all()

@@ -1,4 +1,4 @@
-"""Velocity, rate and force of every motion against differences of its poses."""
+"""Velocity, rate and force of every motion compared with differences of its poses."""
 
 import math
 
@@ -40,11 +40,11 @@ def differences(motion, centre, h_ns):
     'recording', 'guided')])
 def test_truth_is_consistent_by_finite_differences(kind):
     """
-    Velocity, rate and force follow from positions and attitudes by a scheme of their own.
+    Velocity, rate and force agree with sixth-order differences of positions and attitudes.
 
-    Sixth-order central differences over 20 ms.  Their truncation is the difference from those
-    over 40 ms divided by 2^6 - 1; a half of that divisor leaves room for the next order.  An ECEF
-    coordinate rounds to 2^-30 m, an angle to 2^-52 of the largest one, 2 pi rad a second.
+    The differences span 20 ms. Their truncation is the difference from those over 40 ms divided by
+    2^6 - 1; a half of that divisor leaves room for the next order. An ECEF coordinate rounds to
+    2^-30 m, an angle to 2^-52 of the largest one, 2 pi rad a second.
     """
     motion, h_ns = motion_of(kind), 20_000_000
     h, first, second = h_ns * 1e-9, np.abs(FIRST).sum(), np.abs(SECOND).sum()

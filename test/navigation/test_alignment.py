@@ -1,4 +1,4 @@
-"""Self-alignment at a standstill satisfies the textbook error equations for any mounting."""
+"""Self-alignment at a standstill obeys the textbook error equations for any mounting."""
 
 from dataclasses import replace
 import math
@@ -51,7 +51,7 @@ def errors(q, q_true):
        heading=st.floats(0.0, 6.28), how=st.sampled_from(['given', 'tf']))
 def test_any_mounting_navigates_alike(turn, lat, heading, how):
     """
-    With a perfect IMU in any mounting, the attitude is exact to rounding and nothing drifts.
+    With a perfect IMU in any mounting the attitude is exact to rounding and nothing drifts.
 
     A rounding error of 1e-15 in the rotated rate causes 1e-15 / cos(lat) rad of heading error; the
     solution at rest then drifts by less than g 1e-14 t^2 / 2, far below a micrometre in 50 s.
@@ -110,7 +110,7 @@ def test_level_within_bias_over_g_and_heading_within_bias_over_omega_cos_lat(
 @settings(max_examples=100, deadline=None)
 @given(roll=ANGLE, pitch=st.floats(-1.4, 1.4), heading=st.floats(0.0, 6.28))
 def test_level_takes_the_given_heading(roll, pitch, heading):
-    """A perfect force and a given heading determine the whole attitude."""
+    """An exact force and a given heading determine the whole attitude."""
     q_nb = from_compass(roll, pitch, heading)[0]
     force = np.array(quaternion.rotate_back(q_nb, (0.0, 0.0, 9.8)))
     back = to_compass(np.array(alignment.level_attitude(force, heading)))
@@ -119,7 +119,7 @@ def test_level_takes_the_given_heading(roll, pitch, heading):
 
 
 def test_a_vertical_forward_axis_has_no_heading():
-    """With a vertical forward axis ValueError is raised instead of computing a heading."""
+    """If the forward axis is vertical, ValueError is raised, because there is no heading."""
     with pytest.raises(ValueError, match='forward axis is within 1 deg of the vertical'):
         alignment.level_attitude(np.array([9.8, 0.01, 0.0]), 0.0)
 
@@ -191,7 +191,7 @@ def test_a_simulated_navigation_grade_imu_aligns_itself(capsys):
 @pytest.mark.parametrize('bias, trust', [(0.0, True), (0.1, True), (5.0, False), (500.0, False)])
 def test_gyros_too_coarse_are_not_trusted(bias, trust):
     """
-    The heading is rejected if the visible bias would turn it by more than heading_sigma_deg.
+    The heading is rejected if the bias that is visible would turn it by heading_sigma_deg.
 
     2 deg at latitude 50 deg correspond to 15.04 cos(50) sin(2) = 0.34 deg/h.
     """
@@ -204,7 +204,7 @@ def test_gyros_too_coarse_are_not_trusted(bias, trust):
 
 
 def test_the_bias_is_the_mean_rate_less_that_of_the_earth():
-    """The gyro bias is found exactly at any attitude: mean rate minus Earth rate."""
+    """The gyro bias, mean rate minus Earth rate, is exact at any attitude."""
     lat, q_nb = -0.5, tuple(from_compass(2.0, 0.3, 4.0)[0].tolist())
     bias = np.array([1e-3, -2e-3, 3e-3])
     still = standstill.find_standstill(resting(q_nb, lat, bias=(bias, np.zeros(3))),
@@ -228,7 +228,7 @@ def moving(seconds_each, rate_hz=50.0, seed=3):
 
 
 def test_the_standstill_is_found_where_it_is():
-    """The first standstill that is long enough is found, not longer than asked, without motion"""
+    """The first standstill that is long enough is found, and no more of it than is needed."""
     imu = moving([3.0, 4.0, 20.0, 5.0, 40.0])
     limits = AlignmentSettings()
     still = standstill.find_standstill(imu, limits)
@@ -251,7 +251,7 @@ def test_uniform_motion_is_no_standstill_where_the_reference_moves():
 
 
 def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
-    """If the IMU is tilted in a gap, both sides are quiet, but their means differ."""
+    """If the IMU is tilted during a gap, the standstill ends: the means of both sides differ."""
     imu = moving([20.0])
     force = np.where((imu.t_ns >= 10_000_000_000)[:, None], [1.0, 0.0, 9.75], imu.f)
     still = standstill.find_standstill(replace(imu, f=force), AlignmentSettings())
@@ -261,7 +261,7 @@ def test_a_tilt_between_two_quiet_windows_ends_the_standstill():
 @settings(max_examples=100, deadline=None)
 @given(force=UNIT, yaw=ANGLE)
 def test_levelling_the_mounting_brings_the_force_up(force, yaw):
-    """Levelling uses the shortest rotation: its axis is level."""
+    """Levelling uses the shortest rotation, whose axis is level."""
     q = mounting.levelled_mounting(np.array(force), yaw)
     up = np.array(quaternion.rotate(q, tuple(force))) / np.linalg.norm(force)
     assert np.abs(up - [0.0, 0.0, 1.0]).max() < 1e-12
@@ -270,14 +270,14 @@ def test_levelling_the_mounting_brings_the_force_up(force, yaw):
 
 
 def test_mounting_angles_are_those_of_urdf():
-    """Mounting angles rotate about fixed axes x, y, z, as SciPy's 'xyz'."""
+    """Mounting angles are rotations about fixed axes x, y, z, as SciPy's 'xyz' and URDF."""
     q = angles.from_rpy(0.3, -0.7, 2.0)
     assert np.abs(np.array(q) - Rotation.from_euler('xyz', [0.3, -0.7, 2.0]).as_quat()).max() \
         < 1e-15
 
 
 def test_the_chain_of_transforms():
-    """Transforms are chained up and down the tree; the error for a wrong name says which."""
+    """Transforms are chained up and down the tree; the message for a wrong name states which."""
     a, b, c = (tuple(q) for q in Rotation.random(3, random_state=1).as_quat())
     tree = {('base_link', 'mast'): a, ('mast', 'imu'): b, ('base_link', 'gnss'): c}
     assert mounting.chained_mounting({}, 'base_link', 'imu') is None

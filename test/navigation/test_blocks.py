@@ -1,4 +1,4 @@
-"""Blocks of the inertial navigator give the bits of single steps, compiled or not, however cut."""
+"""Blocks of the inertial navigator give the bits of single steps, compiled or not."""
 
 from ins_sim.core.attitude.integration import KINDS
 from ins_sim.core.motion.factory import make_motion
@@ -15,7 +15,7 @@ RNG = np.random.default_rng(7)
 
 @pytest.fixture(scope='module')
 def flight():
-    """Return the settings, readings and truth of a restless flight of 7 s."""
+    """Return settings, readings and truth of a flight of 7 s with strong dynamics."""
     chosen = settings({'motion.kind': 'aggressive', 'output': 'integrated', 'duration_s': 7.0,
                        'gyro.errors.angle_random_walk_deg_sqrt_h': [0.1] * 3})
     generator = chosen.motion_generator
@@ -58,6 +58,7 @@ def rows_of_blocks(navigator, imu, truth):
     *((kind, 'damped', 'integrated') for kind in KINDS),
     *(('quaternion', channel, 'rotation_vector') for channel in CHANNELS)])
 def test_blocks_have_the_bits_of_steps(flight, monkeypatch, how, kind, channel, output):
+    """651 outputs of random blocks, plain and compiled, have the bits of single steps."""
     if how == 'compiled' and compilation.numba() is None:
         pytest.skip('Numba is not installed')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', 10 ** 9 if how == 'plain' else -1)

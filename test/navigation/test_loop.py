@@ -1,4 +1,4 @@
-"""The loop over samples: handling of gaps and faults, and selection of the published outputs."""
+"""The loop over samples: gaps, faults, and selection of the published outputs."""
 
 from ins_sim.core.navigation.loop import Decimation, NavigationLoop
 from ins_sim.core.navigation.recorded import RecordedLoop
@@ -9,30 +9,30 @@ DT_NS = 10_000_000
 
 
 class Steps:
-    """A navigator whose output is the number of samples processed, from the second on."""
+    """A navigator whose output is the number of samples processed, from the second one on."""
 
     def __init__(self):
         self.count = 0
 
     def step(self, t_ns, *sample):
-        """Return the count, or raise the exception that the sample holds."""
+        """Return the count, or raise the exception given in place of a sample."""
         for fault in sample:
             raise fault
         self.count += 1
         return self.count if self.count > 1 else None
 
     def bridge_next(self, step_ns):
-        """Count a bridge as a thousand samples."""
+        """Count a bridged gap as a thousand samples."""
         self.count += 1000
 
 
 def stamps(*indices):
-    """Return samples with the stamps k dt."""
+    """Return samples with stamps k dt."""
     return [(k * DT_NS,) for k in indices]
 
 
 def test_gap_stops():
-    """A gap raises ValueError with the same sentence as in the live node."""
+    """A gap raises ValueError with the message of the live node."""
     loop = NavigationLoop(Steps, DT_NS, on_fault='stop')
     with pytest.raises(ValueError, match='imu has a gap from 0.020000000 s to 0.050000000 s'):
         list(loop.run(stamps(0, 1, 2, 5)))
@@ -57,14 +57,14 @@ def test_blocks_are_one_run():
 
 
 def test_a_repeated_stamp_is_dropped():
-    """As live, a repeated stamp is dropped: no interval of zero, and no restart."""
+    """A repeated stamp is dropped, as in a live run, without a restart."""
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset')
     assert [o for _, o, _ in loop.run(stamps(0, 1, 1, 2))] == [2, 3]
     assert 'imu repeats the stamp' in loop.faults[0]
 
 
 def test_jitter_is_no_gap():
-    """Jitter of up to a fifth of the period either way is allowed, and no more."""
+    """Jitter of up to a fifth of the period in either direction is accepted; more is a gap."""
     late = DT_NS // 5
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset')
     assert len(list(loop.run([(0,), (DT_NS + late,), (2 * DT_NS,), (3 * DT_NS,)]))) == 3
@@ -73,7 +73,7 @@ def test_jitter_is_no_gap():
 
 
 def test_decimation_counts_periods_from_the_first_output():
-    """After a gap the same instants are published as without it."""
+    """After a gap the published instants are those of a run without the gap."""
     loop = NavigationLoop(Steps, DT_NS, 3, 'reset')
     samples = stamps(0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13)
     due = [samples[k][0] // DT_NS for k, _, due in loop.run(samples) if due]
@@ -81,17 +81,17 @@ def test_decimation_counts_periods_from_the_first_output():
 
 
 def test_decimation_begins_again_when_time_jumps_back():
-    """The first output is published, and the first one after a jump back to before it."""
+    """The first output is published, and so is the first one after a jump to an earlier time."""
     decimation = Decimation(4, DT_NS)
     assert decimation.begins(5 * DT_NS) and decimation.due(5 * DT_NS)
     assert not decimation.begins(6 * DT_NS) and not decimation.due(6 * DT_NS)
-    # Stamps with jitter count as the nearest period.
+    # Stamps with jitter count as those of the nearest period.
     assert decimation.due(9 * DT_NS - DT_NS // 3)
     assert decimation.begins(2 * DT_NS) and decimation.due(6 * DT_NS)
 
 
 def test_a_fault_of_the_navigator_is_a_fault_of_the_loop():
-    """A fault that requires a restart passes the sample to a new navigator, once."""
+    """After a fault that requires a restart the sample is passed to a new navigator, once."""
     loop = NavigationLoop(Steps, DT_NS, on_fault='reset')
     bad = StreamFault('diverged', restart=True)
     with pytest.raises(StreamFault, match='diverged'):

@@ -1,5 +1,5 @@
 """
-Reference figures of runs with delays (docs/explanation/validation.md), printed and checked.
+Published errors of runs with delays (docs/explanation/validation.md), printed and checked.
 
 Tolerances: half a unit of the last digit in the published table, unless stated otherwise.
 """
@@ -13,7 +13,7 @@ from support.studies import DEG_PER_HOUR, FLIGHT, MOTION_1, MOTION_2, prediction
 
 from ins_sim.core.earth import ellipsoid
 
-TABLE = [  # theta, detuning, max |dN|, max |dE|, half a unit of the last digits
+TABLE = [  # theta, detuning, max |dN|, max |dE|, half a unit of the last digits.
     (-30.0, 0.0, 4472.1, 623.94, 0.05, 0.005),
     (0.0, 0.0, 3442.8, 479.48, 0.05, 0.005)]
 REST = [
@@ -36,7 +36,7 @@ def cell(theta, detuning):
 
 def grouped(row):
     """
-    Return a row as a parameter whose tests share one run: one worker computes it once.
+    Return a row as a parameter; tests of one row share a run, computed once by one worker.
 
     Rows with theta -30 deg are in the everyday run, those with theta 0 in the slow one: each is a
     simulation of an hour, with its twin.
@@ -51,7 +51,7 @@ def largest(errors):
 
 
 def check_cell(figures, theta, detuning, north, east, tol_n, tol_e):
-    """Check a cell against its figures, and its zero-delay twin against the floor of 1e-4 m."""
+    """Check a cell against its published values; its zero-delay twin errs by at most 1e-4 m."""
     errors, twin = study(cell(theta, detuning))
     n, e = largest(errors)
     floor = largest(twin).max()
@@ -67,33 +67,45 @@ def check_cell(figures, theta, detuning, north, east, tol_n, tol_e):
 
 @pytest.mark.parametrize('theta, detuning, north, east, tol_n, tol_e', map(grouped, TABLE))
 def test_table_of_motion_2(theta, detuning, north, east, tol_n, tol_e, figures):
-    """Two of the eight published cells of motion 2, one of them in the slow run."""
+    """
+    Motion 2: max |dN| and |dE| of two of the eight published cells are reproduced.
+
+    One of the two is in the slow run.
+    """
     check_cell(figures, theta, detuning, north, east, tol_n, tol_e)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('row', REST, ids=lambda row: f'{row[0]:g} {row[1]:g}')
 def test_rest_of_the_table_of_motion_2(row, figures):
-    """The other six of the eight published cells of motion 2."""
+    """Motion 2: max |dN| and |dE| of the other six of the eight published cells are reproduced."""
     check_cell(figures, *row)
 
 
 @pytest.mark.parametrize('theta, published', map(grouped, [(-30.0, 0.0334932), (0.0, 0.0257831)]))
 def test_drift_of_motion_2(theta, published, figures):
-    """Drift by Bogdanov and Fomichev 2018, (19): 1/8 psi'^2 tau cos(theta) (1 - sin(theta))."""
+    """
+    The drift is 1/8 psi'^2 tau cos(theta) (1 - sin(theta)).
+
+    Source: Bogdanov and Fomichev 2018, equation (19).
+    """
     errors, _ = study(cell(theta, 0.0))
     drift = errors.drift[-1] * DEG_PER_HOUR
     formula = 0.125 * 1e-6 * np.cos(np.radians(theta)) * (1 - np.sin(np.radians(theta)))
     print(f'\nmotion 2, theta {theta:g}: drift {drift} deg/h, (19) {formula * DEG_PER_HOUR:.7f}')
     figures.record(f'oracles.motion_2.{theta:g}.drift', drift[0], 'deg/h', published, 'published')
     assert formula * DEG_PER_HOUR == pytest.approx(published, abs=5e-8)
-    # (19) neglects the rotation of the Earth in w: 1e-4 relative, plus (w dt)^2 / 4.
+    # Equation (19) neglects the rotation of the Earth in w: 1e-4 relative, plus (w dt)^2 / 4.
     assert drift[0] == pytest.approx(published, rel=1e-4 + 0.01 ** 2 / 4)
     assert np.abs(drift[1:]).max() < 1e-4 * published
 
 
 def test_motion_1(figures):
-    """Drift by the Bessel formula times 1 - (w dt)^2/6; 111.98 m north and 15.03 m east."""
+    """
+    Motion 1 errs by up to 111.98 m north and 15.03 m east, and drifts by the Bessel formula.
+
+    The formula is multiplied by 1 - (w dt)^2/6 for the sampling. The errors are published.
+    """
     errors, twin = study(MOTION_1)
     n, e = largest(errors)
     floor = largest(twin).max()
@@ -112,7 +124,7 @@ def test_motion_1(figures):
 
 
 def check_flight(figures, values, north, east):
-    """Check error minus twin of a flight of section 7, and its twin against the floor."""
+    """Check the error minus the twin of a flight of section 7; the twin errs by at most 1 mm."""
     errors, twin = study(values)
     n, e = np.abs(errors.position - twin.position).max(axis=0)[[1, 0]]
     floor = largest(twin).max()
@@ -127,22 +139,30 @@ def check_flight(figures, values, north, east):
 
 @pytest.mark.slow
 def test_the_aggressive_flight(figures):
-    """The aggressive flight ends 5.997 m north and 10.741 m east of the truth, as published."""
+    """
+    One hour of the aggressive flight errs by up to 5.997 m north and 10.741 m east.
+
+    The delays are 1, 2, 3 us. Source: specification, section 7.
+    """
     check_flight(figures, AGGRESSIVE, 5.997, 10.741)
 
 
 @pytest.mark.slow
 def test_the_cruise(figures):
-    """The cruise ends 3.591 m north and 3.327 m east of the truth, as published."""
+    """
+    One hour of cruise with delays of 1, 2, 3 us errs by up to 3.591 m north, 3.327 m east.
+
+    Source: specification, section 7.
+    """
     check_flight(figures, CRUISE, 3.591, 3.327)
 
 
 @pytest.mark.slow
 def test_racetrack_errs_by_metres_at_most(figures):
     """
-    The racetrack errs by metres at most in an hour, as predicted by the linear model.
+    With delays the racetrack errs by a few metres in an hour, as the linear model predicts.
 
-    This is a conclusion of Bogdanov and Fomichev 2018 for real flights; no figure is published for
+    This is a conclusion of Bogdanov and Fomichev 2018 for real flights; no value is published for
     this one. The model must predict the whole history of the error to within 1 % of its largest
     value, as in test_prediction.
     """
@@ -162,7 +182,7 @@ def test_racetrack_errs_by_metres_at_most(figures):
 @pytest.mark.slow
 def test_schuler_period(figures):
     """
-    The fitted Schuler period agrees with 2 pi sqrt(R_N / g), 5065.2 s.
+    The fitted Schuler period agrees with 2 pi sqrt(R_N / g) = 5065.2 s.
 
     A constant drift causes a (t - sin(w t) / w); the boundary term [R T w](0) of the attitude
     error, an initial tilt, causes b (1 - cos(w t)).
@@ -179,6 +199,6 @@ def test_schuler_period(figures):
     theory = 2 * np.pi * np.sqrt(ellipsoid.radii(s)[0] / ellipsoid.gravity(s, 0.0))
     print(f'\nSchuler period {period:.3f} s, 2 pi sqrt(R_N / g) = {theory:.3f} s (5065.2)')
     figures.record('oracles.schuler_period', period, 's', theory, '2 pi sqrt(R_N / g)')
-    # The published figure is a fit as well: ours agrees with theory, which rounds to the figure.
+    # The published value is a fit as well: ours agrees with theory, which rounds to that value.
     assert period == pytest.approx(theory, abs=0.01)
     assert theory == pytest.approx(5065.2, abs=0.05)

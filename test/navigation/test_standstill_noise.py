@@ -1,4 +1,4 @@
-"""Standard error of a gyrocompass with gyro bias, on a rocking base, and noise at any rate."""
+"""Standard error of a gyrocompass: gyro bias, rocking base, noise at any sampling rate."""
 
 import math
 
@@ -68,7 +68,7 @@ def test_the_heading_of_fog_gyros_is_within_what_is_stated():
 @pytest.mark.parametrize('given, trusted', [({}, False), ({'sigma': 1.0}, False),
                                             ({'sigma': 0.01}, True)])
 def test_navigate_asks_for_the_bias_or_assumes_10_deg_h(given, trusted):
-    """A record does not show the gyro bias: trust in the heading depends on the setting."""
+    """Gyro bias cannot be seen in a record: trust in the heading depends on the setting."""
     q_nb = tuple(from_compass(0.0, 0.0, 1.0)[0].tolist())
     rate = quaternion.rotate_back(q_nb, (0.0, OMEGA * math.cos(LAT), OMEGA * math.sin(LAT)))
     force = (0.0, 0.0, ellipsoid.gravity(math.sin(LAT), 0.0))
@@ -132,7 +132,7 @@ def test_a_parked_vehicle_that_rocks(frequency_hz, noise):
 
 def test_of_white_noise_it_is_the_scatter_over_root_n():
     """
-    For white noise the standard error is the standard deviation over root n.
+    For white noise the standard error is the standard deviation divided by sqrt(n).
 
     60 windows give 30 degrees of freedom, so that the mean square of 300 draws is within 4 of its
     standard deviations, sqrt(2 / 30 / 900). For random-walk noise the result is far larger.
@@ -147,7 +147,7 @@ def test_of_white_noise_it_is_the_scatter_over_root_n():
 @pytest.mark.parametrize('rate_hz', [100.0, 8000.0])
 def test_noise_is_judged_by_its_rate(rate_hz):
     """
-    The noise limit is independent of the rate: 0.2 m/s^2 at 8 kHz is accepted, at 100 Hz not.
+    The noise limit allows for the sampling rate: 0.2 m/s^2 is accepted at 8 kHz, not at 100 Hz.
 
     0.2 m/s^2 per sample at 8 kHz is 0.022 at 100 Hz, the noise of a MEMS IMU at rest. At 100 Hz a
     scatter of 0.2 comes from an engine or a hand: above the limit of 0.15.

@@ -26,7 +26,7 @@ def order(errors, rates):
 
 
 def test_rotation_vector_input_converges_with_order_two():
-    """Attitude is exact; frame rotation and position are of second order."""
+    """With input instant the attitude is exact, and position and velocity are of second order."""
     rates = [25.0, 50.0, 100.0, 200.0]
     found = [final(WOBBLE, r) for r in rates]
     slope = order([p for p, _ in found], rates)
@@ -36,7 +36,7 @@ def test_rotation_vector_input_converges_with_order_two():
 
 
 def test_integrated_input_converges_with_order_four():
-    """Two-sample coning: the attitude drift of a cone falls with the fourth power of the step."""
+    """With input integrated (two-sample coning) the drift of a cone is of fourth order."""
     cone = {'motion.kind': 'coning', 'motion.coning.half_angle_deg': 5.0,
             'motion.coning.frequency_hz': 2.0, 'output': 'integrated', 'input': 'integrated'}
     rates = [50.0, 100.0, 200.0]
@@ -50,7 +50,7 @@ def test_integrated_input_converges_with_order_four():
 
 
 def test_sculling_is_compensated():
-    """A sculling motion rectifies by f x theta / 2; the two-sample input sees 1e-3 of it."""
+    """A sculling motion rectifies f x theta / 2; with input integrated 1e-3 of it remains."""
     scull = {'motion.kind': 'sculling', 'motion.sculling.amplitude_deg': 2.0,
              'motion.sculling.acceleration_m_s2': 10.0, 'motion.sculling.frequency_hz': 2.0,
              'output': 'integrated'}
@@ -61,7 +61,7 @@ def test_sculling_is_compensated():
 
 
 def test_exact_increments_at_large_angles():
-    """The velocity rotation is in closed form: exact at constant rate and force below pi."""
+    """At constant rate and force the velocity rotation is exact for angles below pi."""
     rng = np.random.default_rng(1)
     for _ in range(100):
         w, f = rng.normal(size=3), rng.normal(size=3)
@@ -69,7 +69,7 @@ def test_exact_increments_at_large_angles():
         exact = sum(0.5 * c * np.array(quaternion.rotate(
             quaternion.exponential(tuple(0.5 * (x + 1) * w)), tuple(f)))
             for x, c in zip(nodes, weights))
-        # With equal samples before and now there is no coning and no sculling between them.
+        # If the last two samples are equal there is no coning and no sculling between them.
         zero = (0.0, 0.0, 0.0)
         phi, u = increments.two_sample_increments(tuple(w), tuple(f), zero, zero)
         np.testing.assert_allclose(phi, w)
@@ -77,7 +77,7 @@ def test_exact_increments_at_large_angles():
 
 
 def test_free_vertical_channel_diverges_and_damped_does_not():
-    """Free: errors grow as exp(t sqrt(2 g / R)), 570 s; damped: they follow the reference."""
+    """Free, the vertical error grows as exp(t sqrt(2 g / R)) (570 s); damped, it stays bounded."""
     start = {'motion.kind': 'static', 'rate_hz': 20.0,
              'initial.position_error_m': [0.0, 0.0, 10.0]}
     free = run_offline(settings(start, duration_s=1200.0, vertical__channel='free'), False).errors
@@ -94,7 +94,7 @@ def test_free_vertical_channel_diverges_and_damped_does_not():
 
 
 def test_initial_errors_are_what_was_asked():
-    """The first output has the attitude, velocity and position errors that were set."""
+    """The first output has the attitude, velocity and position errors of the settings."""
     s = settings({**MOTION_2, 'initial.attitude_error_deg': [0.1, -0.2, 1.0],
                   'initial.velocity_error_m_s': [0.3, -0.4, 0.0],
                   'initial.position_error_m': [20.0, -30.0, 0.0], 'gyro.delay_us.y': 0.0},
@@ -112,7 +112,7 @@ PUNCTUAL = {'motion 1': {**MOTION_1, **NO_DELAY}, 'motion 2': {**MOTION_2, **NO_
 
 @pytest.mark.slow
 def test_an_hour_of_motion_1_at_one_millisecond(figures):
-    """Motion 1 at 1 ms with a delay of 1 us ends 112.05 m north and 15.04 m east (published)."""
+    """Motion 1 at 1 ms with a delay of 1 us ends 112.05 m north and 15.04 m east, as published."""
     errors, _ = study({**MOTION_1, **AT_ONE_MS}, twin=False)
     east, north, _ = np.abs(errors.position).max(axis=0)
     print(f'\nmotion 1 late at 1 ms: |dN| {north:.4g}, |dE| {east:.4g} m')
@@ -124,7 +124,7 @@ def test_an_hour_of_motion_1_at_one_millisecond(figures):
 @pytest.mark.parametrize('name', PUNCTUAL)
 @pytest.mark.parametrize('minutes', [10, pytest.param(60, marks=pytest.mark.figures)])
 def test_the_floor_at_one_millisecond(name, minutes, figures):
-    """Without delays the error at 1 ms is below 5e-4 m in an hour, and less in ten minutes."""
+    """Without delays the error at 1 ms is below 5e-4 m in an hour, and smaller in ten minutes."""
     errors, _ = study({**PUNCTUAL[name], **AT_ONE_MS, 'duration_s': 60.0 * minutes}, twin=False)
     floor = np.abs(errors.position).max()
     print(f'\n{name} at 1 ms, {minutes} min: {floor:.2g} m')

@@ -1,4 +1,4 @@
-"""The extrapolated step: its order, and its exactness for polynomials."""
+"""The extrapolation step: its order, and its exactness for polynomials."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 
 
 def test_the_order_is_eight():
-    """The order is eight: half the step leaves 2^-9 of the error of one step for an oscillator."""
+    """Half the step leaves 2^-9 of the error of one step of an oscillator: order eight."""
     def rates(t, y):
         return y[1], -y[0]
 

@@ -1,4 +1,4 @@
-"""Small matrices in a fixed order of operations, against SciPy, mpmath and their definitions."""
+"""Small matrices computed in a fixed order, compared with SciPy, mpmath and definitions."""
 
 import math
 
@@ -23,7 +23,7 @@ def draws(count, size=1.0):
 
 
 def test_products():
-    """Products are right to rounding for real, complex and mixed, also rectangular matrices."""
+    """Products of real, complex, mixed and rectangular matrices are right to rounding."""
     for a, b in draws(40):
         for left, right in ((a, b), (a.real, b), (a, b[:, :1].real), (a[:1], b)):
             np.testing.assert_allclose(product(left, right), left @ right, rtol=0, atol=1e-14)
@@ -138,13 +138,13 @@ def test_symmetric_solutions_are_those_of_lapack(size):
 
 
 def test_a_singular_matrix_is_refused():
-    """A singular matrix raises LinAlgError, as with LAPACK."""
+    """A singular matrix raises LinAlgError, as in LAPACK."""
     with pytest.raises(np.linalg.LinAlgError, match='singular'):
         solve(np.ones((2, 2)), np.ones((2, 1)))
 
 
 def test_positive_definite_matrices_are_told_from_others():
-    """Nearly singular matrices are positive definite; correlations above 1, 0, NaN are not."""
+    """Nearly singular matrices are positive definite; singular, indefinite, NaN ones are not."""
     draw = np.random.default_rng(3)
     for size in (1, 2, 8, 20):
         a = draw.normal(size=(size, size))

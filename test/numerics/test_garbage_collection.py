@@ -1,4 +1,4 @@
-"""The collector is off within blocks only, and afterwards in its former state in every case."""
+"""The garbage collector is off only within blocks; afterwards its former state returns."""
 
 import gc
 import threading
@@ -10,13 +10,13 @@ from ins_sim.core.numerics.garbage_collection import collector_paused, paused_in
 
 @pytest.fixture(autouse=True)
 def collector():
-    """Restore the collector's state for other tests."""
+    """Restore the state of the collector after the test."""
     yield
     gc.enable()
 
 
 def test_nested_pauses_end_with_the_outer_one():
-    """Leaving an inner pause does not switch the collector on."""
+    """Leaving an inner pause does not enable the collector; leaving the outer one does."""
     with collector_paused:
         with collector_paused:
             assert not gc.isenabled()
@@ -35,7 +35,7 @@ def test_a_pause_ends_with_an_exception():
 
 
 def test_the_last_of_several_threads_restores():
-    """The collector stays off while one of several threads is still inside."""
+    """The collector stays off while one of several threads is still inside a pause."""
     inside, leave = threading.Event(), threading.Event()
 
     def work():
@@ -54,7 +54,7 @@ def test_the_last_of_several_threads_restores():
 
 
 def test_blocks_are_made_without_the_collector_and_used_with_it():
-    """Blocks are made with the collector off and used with it on, even if the use stops early."""
+    """Blocks are made with the collector off and used with it on, even if use stops early."""
     seen, closed = [], []
 
     @paused_in_blocks
@@ -77,7 +77,7 @@ def test_blocks_are_made_without_the_collector_and_used_with_it():
 
 
 def test_an_error_in_a_block_restores():
-    """An error of the generator reaches the consumer, and the collector is restored."""
+    """An error in the generator reaches the consumer, and the collector is restored."""
     @paused_in_blocks
     def blocks():
         yield 1

@@ -1,4 +1,4 @@
-"""A wrong line in the table of motions or filters is reported in one sentence."""
+"""A wrong entry in the table of motions or filters is reported in one message."""
 
 import ins_sim
 from ins_sim.cli.main import main
@@ -28,7 +28,7 @@ def test_a_motion_that_is_not_there(location, said, monkeypatch, capsys, tmp_pat
 
 @pytest.mark.parametrize('location, said', WRONG)
 def test_a_filter_that_is_not_there(location, said, monkeypatch):
-    """A filter whose location is wrong is reported by the same sentence."""
+    """A filter whose location is wrong is reported by the message used for motions."""
     monkeypatch.setitem(FILTERS, 'mine', FilterEntry(location))
     settings = ins_sim.read_settings(['route_flight', 'grade_mid'],
                                      {'duration_s': 1.0, 'filter': 'mine'}, aided=True)
@@ -37,7 +37,7 @@ def test_a_filter_that_is_not_there(location, said, monkeypatch):
 
 
 def test_a_maker_that_returns_no_motion(monkeypatch, tmp_path):
-    """A motion maker without a return value is reported."""
+    """A function of the table of motions that returns no motion is reported."""
     (tmp_path / 'forgetful.py').write_text('def make(motion, datum, earth):\n    pass\n')
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setitem(MOTIONS, 'mine', 'forgetful:make')
@@ -47,7 +47,7 @@ def test_a_maker_that_returns_no_motion(monkeypatch, tmp_path):
 
 
 def test_an_error_inside_a_module_is_its_own(monkeypatch, tmp_path):
-    """A missing library of the user's module is reported as such, not as an error of the table."""
+    """A library that the user's module lacks is reported as such, not as an error of the table."""
     (tmp_path / 'needy.py').write_text('import a_library_that_is_missing\n')
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setitem(MOTIONS, 'mine', 'needy:make')

@@ -22,7 +22,7 @@ def within_chi2(sum_of_squares, freedom):
 @settings(max_examples=40, deadline=None)
 @given(indices=st.lists(st.integers(0, 2 ** 50), min_size=1, max_size=30))
 def test_a_number_depends_on_its_index_alone(indices):
-    """A number depends on its index only: any order, one by one or as a range, same bits."""
+    """A number depends on its index only: in any order, single or in ranges, same bits."""
     one = indexed_noise(3, 1, 'a')
     got = [(one.normal(k), one.uniform(k)) for k in indices]
     for k, (normal, uniform) in zip(indices, got):
@@ -33,7 +33,7 @@ def test_a_number_depends_on_its_index_alone(indices):
 
 
 def test_streams_are_normal_and_independent():
-    """Streams pass Kolmogorov-Smirnov at 1e-6, with correlations below 4/sqrt(n) between 20."""
+    """Streams pass Kolmogorov-Smirnov at 1e-6; 20 of them correlate by less than 4/sqrt(n)."""
     n = 20000
     names = [(0, 0, 'gyro.white'), (1, 0, 'gyro.white'), (0, 1, 'gyro.white'),
              (0, 0, 'accelerometer.white')] + [(5, run, 'x') for run in range(16)]
@@ -48,7 +48,7 @@ def test_streams_are_normal_and_independent():
 
 
 def test_a_negative_index_is_refused():
-    """A negative index is refused in a message that names it."""
+    """A negative index is refused with a message that names it."""
     with pytest.raises(ValueError, match='expected an index >= 0'):
         indexed_noise(0, 0, 'a').normal(-1)
 
@@ -56,7 +56,7 @@ def test_a_negative_index_is_refused():
 @settings(max_examples=25, deadline=None)
 @given(first=st.integers(0, 10 ** 9), count=st.integers(1, 700), cut=st.integers(1, 699))
 def test_processes_do_not_depend_on_what_was_asked(first, count, cut):
-    """A distant range of a process has the same bits whole, in two parts, or from a new object."""
+    """A distant range of a process has the same bits in one part, in two, or from a new object."""
     made = [Processes(1, 0, 'p', (1.0, 2.0), (50.0, math.inf), 0.01) for _ in range(2)]
     whole = made[0].values(first, count)
     cut = min(cut, count)
@@ -70,7 +70,7 @@ def test_processes_do_not_depend_on_what_was_asked(first, count, cut):
 @pytest.mark.parametrize('first', [0, 70000, 2 ** (LEVELS - 1) - 100])
 def test_gauss_markov_is_stationary_and_exact(first):
     """
-    Gauss-Markov: variance sigma^2 at every index; x_{k+d} - rho x_k is white.
+    A Gauss-Markov process has variance sigma^2 at every index; x_{k+d} - rho x_k is white.
 
     The variance of x_{k+d} - rho x_k is sigma^2 (1 - rho^2).
     """
@@ -88,7 +88,7 @@ def test_gauss_markov_is_stationary_and_exact(first):
 
 
 def test_infinite_correlation_time_is_a_random_walk_from_zero():
-    """Random walk: increments over d samples have variance sigma^2 d dt and are independent."""
+    """Increments of a random walk over d samples are independent, with variance sigma^2 d dt."""
     dt, columns = 0.1, 300
     walk = Processes(9, 0, 'walk', (3.0,) * columns, (math.inf,) * columns, dt)
     x = walk.values(0, 2000) / 3.0

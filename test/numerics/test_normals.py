@@ -1,4 +1,4 @@
-"""Normal numbers from Philox words: NumPy's words, one set of bits, right distribution."""
+"""Normal numbers from Philox words: the words of NumPy, equal bits, right distribution."""
 
 import math
 
@@ -16,6 +16,7 @@ def words(block, count, kind=0):
 
 
 def test_arrays_and_floats_have_the_same_bits():
+    """Normal numbers made from arrays and from floats have the same bits."""
     drawn = words(5, 400)
     assert normals.of_words(drawn).tolist() == normals.of_word_list(drawn.tolist())
 
@@ -33,14 +34,14 @@ def test_compiled_numbers_have_the_bits_of_those_of_numpy(count):
 
 
 def test_one_counter_makes_the_words_of_numpy():
-    """Philox in plain Python, with wrap-around, gives the words of NumPy."""
+    """Philox in plain Python gives the words of NumPy, also where the counter wraps around."""
     with np.errstate(over='ignore'):
         found = normals.philox(normals.U64(7), normals.U64(11), normals.U64(1), *KEY)
     assert [int(w) for w in found] == words(11, 28, kind=1)[24:].tolist()
 
 
 def test_the_numbers_are_normal():
-    """1.2 million numbers: Kolmogorov-Smirnov at 1e-6, moments and tails within 5 sigma."""
+    """1.2 million numbers pass Kolmogorov-Smirnov at 1e-6; moments and tails are in 5 sigma."""
     z = indexed_noise(1, 0, 'x', 3).normals(0, 400_000).ravel()
     n, tail = len(z), 2.0 * stats.norm.sf(4.0)
     figures = stats.kstest(z, 'norm').pvalue, stats.skew(z), stats.kurtosis(z), np.sum(abs(z) > 4)

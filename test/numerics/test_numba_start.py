@@ -1,4 +1,4 @@
-"""Parts of Numba that are skipped at start are still available later."""
+"""Parts of Numba that are skipped at start can still be loaded later."""
 
 import subprocess
 import sys
@@ -20,7 +20,7 @@ print(numba.njit(lambda a, b: np.correlate(a, b))(np.ones(3), np.ones(2)).tolist
 
 
 def test_linear_algebra_is_loaded_where_it_is_compiled():
-    """Compiled code of a caller can use SciPy's products, although our loops skip them."""
+    """A caller's compiled code can use the products of SciPy, although our loops skip them."""
     pytest.importorskip('numba', reason='Numba is not installed')
     run = subprocess.run([sys.executable, '-c', CODE], capture_output=True, text=True, check=True)
     assert run.stdout.split('\n')[:3] == ['False', '[[0.5, 0.0], [0.0, 0.25]]', '[2.0, 2.0]']

@@ -6,7 +6,7 @@ from ins_sim.core.numerics import taylor
 
 
 def test_taylor_series_against_closed_forms():
-    """Derivatives of a composed function up to third order equal the exact ones."""
+    """Derivatives of a composed function up to third order equal the closed forms."""
     t = np.array([0.3, -1.2, 2.5])
     x = taylor.Series.time(t, 3)
     s = taylor.sin(x * 2.0) * taylor.tanh(x) / taylor.sqrt(x * x + 1.0)

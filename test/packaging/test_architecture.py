@@ -1,4 +1,4 @@
-"""The directions of the imports, and the sizes of files and folders, are those of the design."""
+"""Imports between packages, and the sizes of files and folders, follow the design."""
 
 import ast
 import re
@@ -11,15 +11,16 @@ PACKAGE = ROOT / 'ins_sim'
 FILES = {'.'.join(path.relative_to(ROOT).with_suffix('').parts).removesuffix('.__init__'): path
          for path in sorted(PACKAGE.rglob('*.py'))}
 LONGEST = 300
-# What numerics has no business with: the edges of the program are elsewhere.
+# Modules that core must not import, because only the edges of the program use them.
 NOT_IN_CORE = {'argparse', 'logging'}
 LAZY = {'numba'}
-# Compiled code is kept in the user's cache, and what takes seconds is said.
+# The modules that may use them: compiled code is cached in the user's folder, and slow
+# compilations are logged.
 COMPILES = ('ins_sim.core.numerics.compile_cache', 'ins_sim.core.numerics.compilation')
 
 
 def imports(name, tree, nodes=None):
-    """Return the absolute names that a module imports, ``from x import y`` as x and x.y."""
+    """Return the absolute names that a module imports; ``from x import y`` counts as x and x.y."""
     package = name if FILES[name].name == '__init__.py' else name.rpartition('.')[0]
     found = set()
     for node in ast.walk(tree) if nodes is None else nodes:
@@ -36,12 +37,12 @@ def imports(name, tree, nodes=None):
 
 
 def eager(tree):
-    """Yield the nodes that run on import: all but the bodies of functions."""
+    """Yield the nodes that are executed on import: all except the bodies of functions."""
     stack = [tree]
     while stack:
         node = stack.pop()
         if isinstance(node, ast.If) and ast.unparse(node.test) == 'TYPE_CHECKING':
-            # Read by type checkers only.
+            # Only type checkers read this branch.
             continue
         yield node
         if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
@@ -53,7 +54,8 @@ IMPORTS = {name: imports(name, tree) for name, tree in TREES.items()}
 EAGER = {name: imports(name, tree, eager(tree)) for name, tree in TREES.items()}
 
 
-# Which rooms of ins_sim a room may import, itself apart. This is the only place that lists it.
+# The packages that each package of ins_sim may import in addition to itself. This is the only
+# place that lists them.
 EARTH = {'core.numerics', 'core.attitude', 'core.earth'}
 STREAMS = EARTH | {'core.timeseries', 'core.streams'}
 CORE = {'core.numerics', 'core.attitude', 'core.earth', 'core.timeseries', 'core.streams',
@@ -101,7 +103,7 @@ MAY_IMPORT = {
     'resources': {'settings.suggest'},
     'graph': {'messages'},
     'launching': {'graph', 'messages', 'resources', 'ros_parameters', 'settings', 'yaml_text'},
-    # it stands before all others
+    # Imported first by every command.
     'entry': {'cli'},
     '__main__': {'entry'},
     'report': CORE | {'settings', 'studies', 'jobs', 'parameter_files', 'regular_file',
@@ -110,36 +112,36 @@ MAY_IMPORT = {
     'ros': FILES_AND_BAGS | {'entry'},
     'testing': {'api', 'messages', 'parameter_files', 'ros', 'settings'},
     'cli': FILES_AND_BAGS | {'ros', 'entry', '__version__'},
-    # The public names; what is not in api is imported for annotations.
+    # The public names; those not in api are imported for annotations.
     '__init__': {'api', 'bags', 'core.motion', 'core.prediction', 'settings'},
 }
 
 
 def room_of(name):
-    """Return the room that a module lies in: 'core.attitude', 'io', 'graph'."""
+    """Return the package in which a module lies: 'core.attitude', 'io', 'graph'."""
     parts = name.split('.')[1:]
     return '.'.join(parts[:2]) if parts[:1] == ['core'] else parts[0] if parts else '__init__'
 
 
 def inside(*rooms):
-    """Return the names of the modules of some rooms."""
+    """Return the names of the modules of some packages."""
     return [name for name in FILES
             if any(f'{name}.'.startswith(f'ins_sim.{room}.') for room in rooms)]
 
 
 def tops(names):
-    """Return the first parts of names."""
+    """Return the first components of dotted names."""
     return {name.partition('.')[0] for name in names}
 
 
 @pytest.mark.parametrize('name', FILES)
 def test_imports_are_those_of_the_table(name):
-    """A module imports its own room and those that MAY_IMPORT names."""
+    """A module imports only its own package and those listed in MAY_IMPORT."""
     room = room_of(name)
     allowed = MAY_IMPORT.get(room, set()) | {room}
     for other in IMPORTS[name]:
         if other.startswith('ins_sim.') and other not in ('ins_sim.core',):
-            # Importing a name of a module is importing that module.
+            # Importing a name from a module imports the module.
             known = other if other in FILES else other.rpartition('.')[0]
             if known != 'ins_sim':
                 assert (room_of(known) in allowed
@@ -148,7 +150,7 @@ def test_imports_are_those_of_the_table(name):
 
 @pytest.mark.parametrize('name', inside('core'))
 def test_core_imports_only_numerics(name):
-    """Core knows the standard library, NumPy, SciPy, itself and, inside functions, Numba."""
+    """core imports the standard library, NumPy, SciPy, itself and, inside functions, Numba."""
     standard = set(sys.stdlib_module_names) - (NOT_IN_CORE if name not in COMPILES else set())
     allowed = standard | {'numpy', 'scipy', 'ins_sim'} | LAZY
     assert tops(IMPORTS[name]) <= allowed
@@ -157,7 +159,7 @@ def test_core_imports_only_numerics(name):
 
 @pytest.mark.parametrize('name', inside('core'))
 def test_core_opens_no_file(name):
-    """Files are read and written at the edges, by ins_sim.io and ins_sim.bags."""
+    """core opens no file; files are read and written by ins_sim.io and ins_sim.bags."""
     called = {node.func.id for node in ast.walk(TREES[name])
               if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
     assert 'open' not in called
@@ -167,7 +169,7 @@ def test_core_opens_no_file(name):
 
 @pytest.mark.parametrize('name', inside('core'))
 def test_core_reads_no_setting_of_a_node(name):
-    """Depths of queues, pacing and the epoch are the node's: it passes what a stage needs."""
+    """core reads no node setting (depths of queues, pacing, epoch); nodes pass what is needed."""
     read = {node.attr for node in ast.walk(TREES[name])
             if isinstance(node, ast.Attribute) and 'settings' in ast.unparse(node.value)}
     assert not read & {'topics', 'pacing', 'time'}
@@ -175,7 +177,7 @@ def test_core_reads_no_setting_of_a_node(name):
 
 @pytest.mark.parametrize('name', inside('settings'))
 def test_settings_need_only_python(name):
-    """A node reads its settings without NumPy."""
+    """Settings are read without NumPy."""
     assert tops(IMPORTS[name]) <= set(sys.stdlib_module_names) | {'ins_sim'}
 
 
@@ -187,20 +189,20 @@ def test_messages_need_only_numpy(name):
 
 @pytest.mark.parametrize('name', [name for name in FILES if name not in inside('ros')])
 def test_only_the_room_ros_imports_rclpy_at_once(name):
-    """Without ROS everything but ins_sim.ros can be imported."""
+    """All packages except ins_sim.ros can be imported without ROS."""
     assert 'rclpy' not in tops(EAGER[name])
 
 
 @pytest.mark.parametrize('name', [name for name, path in FILES.items()
                                   if path.name == '__init__.py' and name != 'ins_sim'])
 def test_a_room_holds_only_its_docstring(name):
-    """The file __init__ of a room says what is in the room, and imports nothing."""
+    """The file __init__ of a package states what is in it, and imports nothing."""
     assert ast.get_docstring(TREES[name])
     assert len(TREES[name].body) == 1
 
 
 def test_no_class_name_twice():
-    """A name of a class means one thing in the whole package."""
+    """No name of a class is used twice in ins_sim."""
     found = {}
     for name, tree in TREES.items():
         for node in ast.walk(tree):
@@ -211,7 +213,7 @@ def test_no_class_name_twice():
 
 @pytest.mark.parametrize('name', FILES)
 def test_imports_are_relative_inside_a_room_and_absolute_across(name):
-    """Every crossing from room to room is visible as an absolute import."""
+    """Imports across packages are absolute, and those within one package are relative."""
     for node in ast.walk(TREES[name]):
         if isinstance(node, ast.ImportFrom):
             base = '.'.join(name.split('.')[:-1 * node.level] if FILES[name].name != '__init__.py'
@@ -225,7 +227,7 @@ def test_imports_are_relative_inside_a_room_and_absolute_across(name):
 @pytest.mark.parametrize('folder', sorted({path.parent for path in FILES.values()}),
                          ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_folder_is_a_table_of_contents(folder):
-    """At most 24 entries, in the rooms of core at most 16."""
+    """A folder has at most 24 entries, or 16 in the packages of core."""
     entries = [path for path in folder.iterdir()
                if path.name not in ('__pycache__', '__init__.py')]
     most = 16 if 'core' in folder.relative_to(ROOT).parts else 24
@@ -244,13 +246,13 @@ def test_there_is_no_import_cycle():
 
 @pytest.mark.parametrize('name', FILES)
 def test_file_is_short_and_has_a_telling_name(name):
-    """A file that needs more lines, or is named utils, holds more than one thing."""
+    """No file has more than 300 lines or a name like utils, which would show several purposes."""
     assert len(FILES[name].read_text(encoding='utf-8').splitlines()) <= LONGEST
     assert name.rpartition('.')[2] not in ('utils', 'util', 'helpers', 'misc')
 
 
 def test_contributing_shows_the_rooms_in_the_order_of_their_imports():
-    """CONTRIBUTING.md has every room; a room imports only its own row and the rows above it."""
+    """CONTRIBUTING.md lists all packages; each imports only its own row and the rows above it."""
     text = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
     table = text.partition('| rooms | content |')[2].partition('\n\n')[0]
     row_of = {room: row for row, line in enumerate(table.splitlines())

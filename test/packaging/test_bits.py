@@ -1,4 +1,4 @@
-"""The shipped configurations give the bits that are promised (docs/design/bits.md)."""
+"""The shipped configurations give the guaranteed bits (docs/design/bits.md)."""
 
 import importlib
 import platform
@@ -10,7 +10,7 @@ from support.places import ROOT
 
 @pytest.fixture
 def bits(monkeypatch):
-    """Return the module tools/bits.py; skip where nothing is promised."""
+    """Return the module tools/bits.py; skip the test where nothing is guaranteed."""
     if platform.machine() not in ('x86_64', 'AMD64'):
         pytest.skip(f'the bits are promised for x86-64; this is {platform.machine()}')
     monkeypatch.syspath_prepend(str(ROOT / 'tools'))
@@ -18,7 +18,7 @@ def bits(monkeypatch):
 
 
 def expect(found, bits):
-    """Compare digests with those stored."""
+    """Compare digests with the stored ones."""
     assert len(found) > 60
     assert not bits.different(found, bits.reference()), (
         'if the numbers are meant to change: python tools/bits.py --write, and say so in '
@@ -26,7 +26,7 @@ def expect(found, bits):
 
 
 def test_the_bits_are_those_stored(bits):
-    """The digests are those stored, with any Python, NumPy and C library."""
+    """The digests equal the stored ones, with any Python, NumPy and C library."""
     expect(bits.in_child(options=['--plain']), bits)
 
 

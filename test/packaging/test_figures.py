@@ -1,4 +1,4 @@
-"""The figures of a run end up in one file, with one process and with several."""
+"""The figures of a test run are written to one file, with one process and with several."""
 
 import json
 import os
@@ -39,7 +39,11 @@ def run(pytester, *words):
 
 @pytest.mark.parametrize('words', [('-p', 'no:xdist'), ('-n', '2')], ids=['one', 'workers'])
 def test_figures_of_passed_tests_are_written(runner, words):
-    """Every figure with unit, expectation and test; none of a test that failed."""
+    """
+    The file has every figure of passed tests with unit, expectation and test.
+
+    It has no figure of a test that failed.
+    """
     if '-n' in words:
         pytest.importorskip('xdist')
     found = run(runner, *words)
@@ -51,7 +55,7 @@ def test_figures_of_passed_tests_are_written(runner, words):
 
 
 def test_a_second_run_adds_to_the_file(runner):
-    """What the first run has written stays."""
+    """A second run adds its figures and keeps those of the first run."""
     folder = runner.path / 'out'
     folder.mkdir()
     (folder / 'figures.json').write_text('{"figures": {"former": {"value": 1}}}')

@@ -1,4 +1,4 @@
-"""The package installs with pip and colcon, and the two commands set themselves up."""
+"""The package installs with pip and colcon, and the bootstrap script sets itself up."""
 
 from importlib import import_module
 import ast
@@ -24,7 +24,7 @@ FIND = ('from ins_sim import resources, __file__ as f; '
 
 
 def run(command, **options):
-    """Return what a command prints; its failure fails the test with both streams."""
+    """Return the output of a command; if it fails, the test fails with both streams."""
     result = subprocess.run([str(word) for word in command], capture_output=True, text=True,
                             stdin=subprocess.DEVNULL, timeout=600, **options)
     assert result.returncode == 0, result.stdout + result.stderr
@@ -33,7 +33,7 @@ def run(command, **options):
 
 @pytest.fixture
 def source(tmp_path):
-    """Return a copy of the source tree, for a build leaves files beside the sources."""
+    """Return a copy of the source tree, because a build leaves files next to the sources."""
     copy = tmp_path / 'src' / 'ins_sim'
     shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(
         '.git', '.venv*', 'build', 'install', 'log', '*.egg-info', '__pycache__'))
@@ -42,7 +42,7 @@ def source(tmp_path):
 
 @pytest.fixture
 def clean_environment():
-    """Return the environment without the traces that the wheels' start-up hook leaves."""
+    """Return the environment without the variables set by the start-up hook of the wheels."""
     env = {name: value for name, value in os.environ.items() if name not in (
         '_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'LD_LIBRARY_PATH', 'VIRTUAL_ENV', 'PYTHONPATH',
         'AMENT_PREFIX_PATH')}
@@ -50,7 +50,7 @@ def clean_environment():
 
 
 def test_versions_agree():
-    """The manifest of ROS and the package carry one version."""
+    """package.xml and the package have the same version."""
     assert MANIFEST.findtext('version') == __version__
     assert MANIFEST.findtext('name') == 'ins_sim'
 
@@ -111,17 +111,17 @@ def imported_packages():
 
 
 def test_run_time_needs_five_libraries_and_ros():
-    """What is imported is required at run time, comes with ROS, or is an extra."""
+    """Each imported library is a run-time requirement, part of ROS, or an extra."""
     required = re.search(r'install_requires=\[(.*?)\]', SETUP, re.DOTALL).group(1)
     assert re.findall(r"'(\w+)", required) == ['numpy', 'scipy', 'pyyaml', 'matplotlib', 'rich']
     of_ros = {element.text for element in MANIFEST.iter('exec_depend')}
-    # pytest: ins_sim.testing offers a fixture where it is there
+    # pytest: ins_sim.testing defines a fixture if it is installed.
     extras = {'pandas', 'numba', 'pygeomag', 'bokeh', 'xarray', 'distributed', 'pytest'}
     assert imported_packages() <= {'numpy', 'scipy', 'yaml', 'matplotlib', 'rich'} | (
         of_ros | extras)
 
 
-# Packages of Jazzy and of Ubuntu 24.04; a new dependency is looked up in rosdistro and added.
+# Packages of Jazzy and of Ubuntu 24.04; look a new dependency up in rosdistro and add it.
 KEYS = {
     'ament_index_python', 'diagnostic_msgs', 'geometry_msgs', 'launch', 'launch_ros', 'nav_msgs',
     'rcl_interfaces', 'rclpy', 'ros2launch', 'rosgraph_msgs', 'sensor_msgs', 'std_msgs',
@@ -131,7 +131,11 @@ KEYS = {
 
 
 def test_manifest_depends_on_packages_of_ubuntu_alone():
-    """A release of a ROS distribution may not depend on keys that rosdep takes from PyPI."""
+    """
+    package.xml depends on packages of ROS and Ubuntu only.
+
+    A release of a ROS distribution may not depend on keys that rosdep installs from PyPI.
+    """
     names = {element.text for element in MANIFEST if element.tag.endswith('depend')}
     assert names == KEYS
     for library in ('numpy', 'scipy', 'yaml', 'matplotlib', 'rich'):
@@ -140,7 +144,7 @@ def test_manifest_depends_on_packages_of_ubuntu_alone():
 
 @pytest.mark.slow
 def test_pip_install(source, tmp_path, clean_environment):
-    """``pip install .`` in a new environment gives the scripts, and finds its configuration."""
+    """``pip install .`` in a new environment gives the scripts, which find their configuration."""
     python = tmp_path / 'venv' / 'bin' / 'python'
     run([sys.executable, '-m', 'venv', tmp_path / 'venv'], env=clean_environment)
     run([python, '-m', 'pip', 'install', '--quiet', '--prefer-binary', source],
@@ -156,13 +160,13 @@ def test_pip_install(source, tmp_path, clean_environment):
     names = {line.partition('==')[0].lower() for line in listed.split()}
     print(f'pip install . : {len(names)} packages, {", ".join(sorted(names))}')
     assert len(names - {'pip', 'setuptools', 'wheel'}) <= 20
-    # The definitions of the messages come with the package.
+    # The definitions of the messages are installed with the package.
     run([python.parent / 'ins_sim', 'simulate', '-p', 'duration_s:=1.0', '-o', 'run', '--bag',
          'bag'], cwd=tmp_path, env=clean_environment)
 
 
 def test_colcon_build(source, tmp_path):
-    """``colcon build`` puts everything where ``ros2 run`` and the ament index look."""
+    """``colcon build`` installs everything where ``ros2 run`` and the ament index search."""
     pytest.importorskip('colcon_ros', reason='colcon-ros is not installed')
     pytest.importorskip('ament_index_python', reason='no ROS: nothing to build upon')
     env = dict(os.environ)
@@ -172,7 +176,7 @@ def test_colcon_build(source, tmp_path):
     prefix = tmp_path / 'install' / 'ins_sim'
     for script in SCRIPTS:
         assert os.access(prefix / 'lib' / 'ins_sim' / script, os.X_OK)
-    # What sourcing the workspace sets.
+    # The variables that sourcing the workspace sets.
     env['AMENT_PREFIX_PATH'] = f'{prefix}{os.pathsep}{env["AMENT_PREFIX_PATH"]}'
     site, = (prefix / 'lib').glob('python*/site-packages')
     env['PYTHONPATH'] = os.pathsep.join([str(site), *filter(None, [env.get('PYTHONPATH')])])
@@ -194,7 +198,7 @@ def bootstrap(source, environment, *command):
 
 
 def test_sourced_ros_without_rclpy_is_refused(source, tmp_path, clean_environment):
-    """Wheels are never mixed with the libraries of a sourced ROS."""
+    """The bootstrap script never mixes wheels with the libraries of a sourced ROS."""
     # A module that cannot be imported hides the rclpy of this environment.
     (tmp_path / 'rclpy.py').write_text('raise ImportError\n')
     result = bootstrap(source, {**clean_environment, 'ROS_DISTRO': 'jazzy',
@@ -205,7 +209,7 @@ def test_sourced_ros_without_rclpy_is_refused(source, tmp_path, clean_environmen
 
 
 def test_an_interrupted_set_up_says_so_in_one_sentence(source, clean_environment, tmp_path):
-    """Ctrl-C while a step of the set-up runs; the step is an interpreter that makes no .venv."""
+    """Ctrl-C during a step of the set-up gives one message; the step here makes no .venv."""
     mark = tmp_path / 'started'
     (source / 'tools' / 'slow.py').write_text(
         'import os, pathlib, sys, time\nsys.path.insert(0, os.path.dirname(__file__))\n'
@@ -226,7 +230,7 @@ def test_an_interrupted_set_up_says_so_in_one_sentence(source, clean_environment
 
 @pytest.mark.slow
 def test_bootstrap_recovers_and_needs_no_network_again(source, clean_environment):
-    """A half-made environment is made anew, and a whole one is used as it is."""
+    """An incomplete environment is made again, and a complete one is used without network."""
     offline = {**clean_environment, 'PIP_NO_INDEX': '1', 'PIP_CONFIG_FILE': os.devnull}
     offline.pop('PIP_FIND_LINKS', None)
     result = bootstrap(source, offline)

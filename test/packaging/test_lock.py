@@ -1,4 +1,4 @@
-"""The lock file holds what setup.py asks for, for every supported Python, with hashes."""
+"""The lock file has the requirements of setup.py, for every supported Python, with hashes."""
 
 import importlib.util
 from pathlib import Path
@@ -13,14 +13,14 @@ from support.places import ROOT
 
 LOCK = (ROOT / 'requirements.lock').read_text(encoding='utf-8')
 PYTHONS = ['3.10', '3.11', '3.12', '3.13', '3.14']
-# one requirement: a line "name==version ; marker \" and its hashes
+# One requirement: a line "name==version ; marker \" and its hashes.
 ENTRY = re.compile(r'(?P<requirement>[a-z][^\\\n]*?)'
                    r'(?P<hashes>(?: \\\n    --hash=sha256:[0-9a-f]{64})+)\n')
 
 
 @pytest.fixture
 def setup_arguments(monkeypatch):
-    """Return the keyword arguments that setup.py gives to setuptools."""
+    """Return the keyword arguments that setup.py passes to setuptools."""
     given = {}
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(setuptools, 'setup', given.update)
@@ -29,7 +29,7 @@ def setup_arguments(monkeypatch):
 
 
 def environment(python):
-    """Return the markers of a Python on a machine with wheels of rclpy."""
+    """Return the environment markers of a Python on a machine with wheels of rclpy."""
     return {'python_version': python, 'python_full_version': f'{python}.1',
             'sys_platform': 'linux', 'platform_system': 'Linux', 'platform_machine': 'x86_64',
             'os_name': 'posix', 'platform_python_implementation': 'CPython',
@@ -37,7 +37,7 @@ def environment(python):
 
 
 def locked(python):
-    """Return {name: version} of what is installed for a Python; no name may come twice."""
+    """Return {name: version} of what is installed for a Python; a name must be unique."""
     versions = {}
     for entry in ENTRY.finditer(LOCK):
         requirement = Requirement(entry['requirement'])
@@ -50,7 +50,7 @@ def locked(python):
 
 
 def test_every_requirement_has_a_version_and_hashes():
-    """The file consists of such entries and of nothing else: no option, no comment."""
+    """The lock file has only requirements with version and hashes: no option and no comment."""
     assert ENTRY.sub('', LOCK) == ''
     assert len(ENTRY.findall(LOCK)) > 100
 
@@ -63,7 +63,11 @@ def test_no_index_is_named():
 
 @pytest.mark.parametrize('python', PYTHONS)
 def test_what_setup_asks_for_is_locked(setup_arguments, python):
-    """Requirements, extras test and compression, and rclpy are locked within their bounds."""
+    """
+    Requirements, extras and rclpy are locked to versions that setup.py allows.
+
+    The extras are test, compression and dataframe.
+    """
     versions = locked(python)
     extras = setup_arguments['extras_require']
     for text in [*setup_arguments['install_requires'], *extras['ros'], *extras['test'],
@@ -75,7 +79,12 @@ def test_what_setup_asks_for_is_locked(setup_arguments, python):
 
 @pytest.mark.parametrize('python', PYTHONS)
 def test_the_locked_setuptools_builds_the_package(python):
-    """It needs no wheel beside it from 70.1, and has the command develop, of colcon, before 80."""
+    """
+    The locked setuptools is at least 70.1 and below 80.
+
+    From 70.1 on it needs no package wheel; before 80 it has the command develop, which colcon
+    uses.
+    """
     major, minor = map(int, locked(python)['setuptools'].split('.')[:2])
     assert (70, 1) <= (major, minor) < (80, 0)
 
@@ -90,7 +99,7 @@ def bootstrap():
 
 
 def test_a_changed_lock_is_noticed(bootstrap, monkeypatch, tmp_path):
-    """The stamp of the virtual environment covers the lock file."""
+    """A changed lock file changes the stamp of the virtual environment."""
     before = bootstrap.digest_of_requirements()
     other = tmp_path / 'requirements.lock'
     monkeypatch.setattr(bootstrap, 'LOCK', str(other))
@@ -101,7 +110,7 @@ def test_a_changed_lock_is_noticed(bootstrap, monkeypatch, tmp_path):
 
 
 def installed_by(bootstrap, monkeypatch, tmp_path, with_ros, **facts):
-    """Return what pip is asked to install on a machine: the options of each call."""
+    """Return the options of each call of pip on a machine."""
     calls = []
     monkeypatch.setattr(bootstrap, 'VENV', str(tmp_path))
     monkeypatch.setattr(bootstrap, 'run', lambda command, *_: calls.append(command[4:]))
@@ -118,7 +127,7 @@ def test_without_ros_the_lock_is_installed(bootstrap, monkeypatch, tmp_path):
 
 
 def test_beside_ros_the_lock_is_left_alone(bootstrap, monkeypatch, tmp_path):
-    """With a sourced ROS the lock is not used, so that NumPy stays that of ROS."""
+    """With a sourced ROS the lock is not used, so that NumPy remains that of ROS."""
     monkeypatch.setenv('ROS_DISTRO', 'jazzy')
     command, = installed_by(bootstrap, monkeypatch, tmp_path, with_ros=True, numpy='1.26.4')
     assert bootstrap.LOCK not in command and '--require-hashes' not in command
@@ -129,6 +138,6 @@ def test_beside_ros_the_lock_is_left_alone(bootstrap, monkeypatch, tmp_path):
 @pytest.mark.parametrize('facts', [{'machine': 'aarch64'}, {'version': [3, 15, 0]},
                                    {'libc': ('', '')}])
 def test_without_wheels_of_rclpy_the_lock_is_left_alone(bootstrap, monkeypatch, tmp_path, facts):
-    """The lock holds rclpy, which exists as wheels for some machines only."""
+    """On machines without wheels of rclpy the lock, which contains them, is not used."""
     command, = installed_by(bootstrap, monkeypatch, tmp_path, with_ros=False, **facts)
     assert bootstrap.LOCK not in command and '--constraint' not in command

@@ -1,4 +1,4 @@
-"""What decides the bits of a run is arithmetic that IEEE 754 fixes (docs/design/bits.md)."""
+"""All arithmetic that determines the bits of a run is fixed by IEEE 754 (docs/design/bits.md)."""
 
 import ast
 
@@ -7,26 +7,26 @@ from support.places import ROOT
 
 CORE = ROOT / 'ins_sim' / 'core'
 FILES = {str(path.relative_to(CORE)): path for path in sorted(CORE.rglob('*.py'))}
-# The one place of the transcendental functions.
+# The only module with transcendental functions.
 ELEMENTARY = 'numerics/elementary.py'
 MODULES = {'math', 'cmath', 'np', 'numpy'}
-# Each C library, and NumPy for each processor, has its own.
+# These differ between C libraries, and in NumPy between processors.
 TRANSCENDENTAL = {
     'sin', 'cos', 'tan', 'asin', 'acos', 'atan', 'atan2', 'arcsin', 'arccos', 'arctan', 'arctan2',
     'exp', 'exp2', 'expm1', 'log', 'log1p', 'log2', 'log10', 'logaddexp', 'sinh', 'cosh', 'tanh',
     'asinh', 'acosh', 'atanh', 'arcsinh', 'arccosh', 'arctanh', 'hypot', 'dist', 'pow', 'power',
     'float_power', 'cbrt', 'sinc', 'angle', 'erf', 'erfc', 'gamma', 'lgamma', 'geomspace',
     'logspace', 'phase', 'polar', 'rect', 'i0', 'hanning', 'hamming', 'blackman', 'kaiser'}
-# They add in an order that the processor chooses.
+# These add in an order that depends on the processor.
 PRODUCTS = {'linalg', 'fft', 'dot', 'vdot', 'inner', 'matmul', 'einsum', 'tensordot', 'convolve',
             'correlate', 'polyfit', 'cov', 'corrcoef', 'trapezoid', 'trapz', 'sumprod', 'average',
             'nansum', 'nanmean', 'nanstd', 'nanvar'}
-# Along the first axis rows are added one after another; in a row numbers are added in parts.
+# Along the first axis rows are added one after another; within a row in several parts.
 SUMS = {'sum', 'mean', 'std', 'var', 'prod'}
 RECORDING = 'a recorded motion is splined by LAPACK: "bits: this machine" in its manifest'
 SIGNAL = 'mode signal lives in Fourier transforms: "bits: this machine" in its manifest'
 LINEAR_LOOP = 'theory of the closed loop beside flights: printed and plotted, in no array of a run'
-# File: what it uses all the same, and why it may.
+# By file: what it uses nevertheless, and why it may.
 EXCEPTIONS = {
     'motion/recorded/spline.py': ({'**', 'mean', 'scipy', 'sum'}, RECORDING),
     'motion/recorded/faults.py': ({'**', 'cos', 'scipy', 'sin', 'sum'}, RECORDING),
@@ -46,7 +46,7 @@ EXCEPTIONS = {
 
 
 def bits_of_the_machine(tree):
-    """Yield what in a tree has its bits from the machine: a name or an operator."""
+    """Yield the names and operators in a tree whose results depend on the machine."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Attribute):
             value = node.value
@@ -56,7 +56,7 @@ def bits_of_the_machine(tree):
         elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
             yield '@'
         elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
-            # Of floats it is the pow of the C library; with two numbers the compiler's business.
+            # For floats this is pow of the C library; for two constants the compiler computes it.
             if not all(isinstance(side, (ast.Constant, ast.UnaryOp))
                        for side in (node.left, node.right)):
                 yield '**'
@@ -67,7 +67,7 @@ def bits_of_the_machine(tree):
 
 
 def _is_error(node, tree):
-    """Return whether a name is only that of numpy.linalg.LinAlgError."""
+    """Return whether a name is used only as numpy.linalg.LinAlgError."""
     return any(isinstance(outer, ast.Attribute) and outer.value is node
                and outer.attr == 'LinAlgError' for outer in ast.walk(tree))
 
@@ -75,7 +75,7 @@ def _is_error(node, tree):
 def _called(node):
     function = node.func
     if isinstance(function, ast.Name):
-        # From Python 3.12 on it rounds less than adding does.
+        # From Python 3.12 on sum of floats rounds less than repeated addition.
         if function.id in ('sum', 'pow'):
             yield function.id
     elif isinstance(function, ast.Attribute):
@@ -85,7 +85,7 @@ def _called(node):
 
 
 def _imported(node):
-    """Yield what an import lets in by another name."""
+    """Yield the names of machine-dependent functions that an import makes available."""
     base = node.module or '' if isinstance(node, ast.ImportFrom) else ''
     names = {alias.name for alias in node.names}
     for top in {(base or name).partition('.')[0] for name in names} & {'scipy', 'cmath'}:
@@ -96,10 +96,10 @@ def _imported(node):
 
 @pytest.mark.parametrize('name', FILES)
 def test_core_leaves_no_bit_to_the_machine(name):
-    """No transcendental function but those of elementary, no BLAS, no sums in another order."""
+    """core has no transcendental function outside elementary, no BLAS, and no reordered sums."""
     if name != ELEMENTARY:
         found = set(bits_of_the_machine(ast.parse(FILES[name].read_text(encoding='utf-8'))))
-        # An exception that is no longer needed goes, too.
+        # An exception that is no longer needed must be removed.
         assert found == EXCEPTIONS.get(name, (set(),))[0]
 
 
@@ -112,5 +112,5 @@ def test_core_leaves_no_bit_to_the_machine(name):
     ('from numpy import fft', ['fft']), ('from .elementary import sin\nsin(x)', []),
     ('import cmath', ['cmath']), ('math.sqrt(x) + np.add.reduce(x)', [])])
 def test_the_law_sees(text, expected):
-    """Calls, names handed on, operators and imports."""
+    """The check finds calls, functions passed on, operators and imports."""
     assert list(bits_of_the_machine(ast.parse(text))) == expected

@@ -22,7 +22,7 @@ def test_flake8():
 
 
 def test_single_quotes():
-    """Double quotes stand only round docstrings and round text that holds a single quote."""
+    """Double quotes are used only for docstrings and for texts with a single quote."""
     wrong = []
     for path in SOURCES:
         with open(path, 'rb') as stream:

@@ -35,6 +35,6 @@ def test_nothing_is_imported_from_a_test_and_no_path_is_set(name):
 
 @pytest.mark.parametrize('name', FILES)
 def test_nothing_is_timed(name):
-    """Speed is measured by benchmarks; a clock in a test may only guard against a hang."""
+    """No test asserts a speed, which benchmarks measure; a clock may only guard against a hang."""
     text = FILES[name].read_text(encoding='utf-8')
     assert 'perf_' + 'counter' not in text and 'time.time' + '()' not in text

@@ -1,4 +1,4 @@
-"""Gaps, bad stamps and bad samples of a record: the remaining solution, and the notes."""
+"""Gaps, bad stamps and bad samples of a record: the remaining solution and the notes."""
 
 from dataclasses import replace
 import math
@@ -29,7 +29,7 @@ def with_gap(first_s=8.0, length_s=0.5):
 
 
 def test_a_gap_ends_the_solution():
-    """With on_gap stop the last state is the one before the gap, and a note says so."""
+    """With on_gap stop the last state is the one before the gap, and a note states this."""
     t_ns = with_gap()
     got = run(*recorded(t_ns))
     assert got.states[-1].t_ns[-1] == 9 * SECOND and len(got.states) == 1
@@ -49,8 +49,9 @@ def test_a_gap_restarts_from_the_reference():
 
 def test_a_gap_without_a_restart_says_why():
     """
-    Without an attitude in the reference and without a standstill there is no restart; a note says
-    why.
+    Without an attitude in the reference or a standstill there is no restart; a note states why.
+
+    The setting is on_gap restart.
     """
     imu, reference = recorded(with_gap())
     truth = MOTION.at(imu.t_ns[:1])
@@ -63,7 +64,7 @@ def test_a_gap_without_a_restart_says_why():
 
 
 def test_a_gap_restarts_from_a_standstill_behind_it():
-    """With a fix but no attitude in the reference, the IMU gyrocompasses again after the gap."""
+    """With a fix but no attitude in the reference the IMU gyrocompasses again after the gap."""
     lat = 0.7
     t_ns = stamps(50.0, 60.0, 0.0)
     t_ns = t_ns[(t_ns <= 20 * SECOND) | (t_ns >= 25 * SECOND)]
@@ -88,10 +89,10 @@ def _degrees(q_nb):
 
 def test_a_gap_is_bridged_by_straight_lines(capsys):
     """
-    With on_gap bridge the error is that of linear interpolation, and a note says so.
+    With on_gap bridge the error is that of linear interpolation, and a note states the bridge.
 
     Bound on the attitude: the largest second derivative of the rates (their sinusoids have at most
-    0.7 Hz) times T^3 / 12, T = 0.05 s, which is the error of the trapezoid rule.
+    0.7 Hz) times T^3 / 12, T = 0.05 s, which is the error of the trapezoidal rule.
     """
     t_ns = with_gap(length_s=0.05)
     imu, reference = recorded(t_ns)
@@ -108,7 +109,7 @@ def test_a_gap_is_bridged_by_straight_lines(capsys):
 
 
 def test_a_gap_of_decades_is_not_bridged():
-    """A stamp decades later is not bridged, which would take millions of steps."""
+    """A gap of decades is not bridged, because it would take millions of steps."""
     t_ns = np.append(stamps(100.0), 1_700_000_000 * SECOND)
     imu, reference = recorded(t_ns[:-1])
     rows = np.append(np.arange(len(imu)), len(imu) - 1)
@@ -121,7 +122,7 @@ def test_a_gap_of_decades_is_not_bridged():
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.integers(0, 30), min_size=2, max_size=25))
 def test_as_few_stamps_as_possible_are_dropped(values):
-    """As few samples are dropped as by the quadratic textbook method, and the rest increases."""
+    """As few samples are dropped as by the quadratic textbook method; the rest increases."""
     t_ns = np.array(values, dtype=np.int64)
     longest = [1] * len(values)
     for k in range(len(values)):
@@ -156,8 +157,9 @@ def test_nan_samples_and_bad_stamps_are_dropped_and_counted():
 
 def test_a_solution_that_runs_away_is_cut_and_said():
     """
-    With rates in deg/s taken for rad/s the solution is cut where it diverges; no NaN, no
-    traceback.
+    With rates in deg/s taken for rad/s the solution is cut where it diverges, with a note.
+
+    There is no NaN and no traceback.
     """
     imu, reference = recorded(stamps(100.0, 300.0))
     got = run(replace(imu, omega=imu.omega * 57.3, f=imu.f * 9.8 * 1000.0), reference)

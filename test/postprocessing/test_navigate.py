@@ -53,11 +53,11 @@ def test_instant_samples_converge_with_the_square_of_the_step(capsys):
 @given(seed=st.integers(0, 10000), lost=st.floats(0.0, 0.3))
 def test_jitter_and_drop_outs_cost_no_more_than_the_longest_steps(seed, lost):
     """
-    Jittering stamps and lost samples, each sample at its own true value, cost at most the long
-    steps.
+    Jittering stamps and lost samples cost at most as much as the longest steps.
 
-    The error of the trapezoidal rule over steps dt_k is bounded by C sum(dt_k^3). C is taken from
-    the uniform 100 Hz run, times ten, because signed errors cancel there and need not do so here.
+    Each sample has its own true value. The error of the trapezoidal rule over steps dt_k is
+    bounded by C sum(dt_k^3). C is taken from the uniform 100 Hz run, times ten, because signed
+    errors cancel there and need not do so here.
     """
     t_ns = stamps(100.0)
     uniform, _ = end_errors(run(*recorded(t_ns)))
@@ -87,14 +87,14 @@ def test_straight_lines_of_rate_and_force_are_stepped_alike_by_means_and_by_inst
     ends = uneven_increments('instant', (tuple(a.tolist()), tuple(c.tolist())),
                              (mean(a, b, now, now), mean(c, d, now, now)), now, before)
     assert np.abs(np.array(means) - np.array(ends)).max() < 1e-16
-    # The coning of the interval in closed form is b x a dt^3 / 12 with the sign of a x b.
+    # The coning of the interval in closed form is b x a dt^3 / 12, with the sign of a x b.
     alpha = np.array(mean(a, b, 0.0, now)) * now
     assert np.abs(np.array(ends[0]) - alpha - np.cross(a, b) * now ** 3 / 12.0).max() < 1e-16
 
 
 def test_the_loop_closes_on_the_simulated_imu(capsys):
     """
-    Output of imu_sensor, in both modes, navigates back to the truth.
+    The output of imu_sensor, in both modes, navigates back to the truth.
 
     Bound: the error of the offline strapdown on the same samples, times 1.01 for the different
     start.
@@ -120,7 +120,7 @@ def test_the_loop_closes_on_the_simulated_imu(capsys):
 
 def test_the_damped_channel_follows_the_height_of_the_reference():
     """
-    An upward accelerometer bias, at rest: the free channel falls, the damped one keeps the height.
+    With an upward accelerometer bias at rest the free channel falls, the damped one does not.
 
     The third-order loop has no final offset, because its integrator compensates the bias. Free: b
     t^2 / 2 within the effect of the gravity gradient, 1 + (2 g / R) t^2 / 12.

@@ -1,4 +1,4 @@
-"""The loop of the error model gives equal bits step by step, in plain Python and compiled."""
+"""The loop of the error model has the same bits in single steps, plain loops, compiled loops."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The Fourier coefficients by real arithmetic agree with those of NumPy."""
+"""The Fourier coefficients computed with real arithmetic agree with those of NumPy."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from ins_sim.core.prediction.fourier import fourier_coefficients
 
 @pytest.mark.parametrize('count', [2, 4, 64, 4096])
 def test_coefficients_are_those_of_numpy(count):
-    """Coefficients agree with numpy.fft within rounding, harmonics in the same order."""
+    """Coefficients agree with numpy.fft within rounding, with harmonics in the same order."""
     samples = np.random.default_rng(count).normal(size=(count, 3))
     real, imaginary, harmonics = fourier_coefficients(samples)
     expected = np.fft.fft(samples, axis=0) / count

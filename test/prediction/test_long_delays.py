@@ -31,9 +31,13 @@ def largest(errors):
 
 @pytest.mark.xdist_group('long delays')
 def test_delays_of_milliseconds_from_the_motion_itself(flown):
-    """x 5, y 25, z 0 ms on motion 2 detuned by 0.1 rad/s, 600 s: 5869.9 / 85141.9 m."""
+    """
+    Delays of 5 ms (x) and 25 ms (y) on detuned motion 2 err by 5869.9 / 85141.9 m in 600 s.
+
+    The detuning is 0.1 rad/s.
+    """
     north, east = largest(flown[0]['motion', 'analytic'])
-    # 2e-5, because the expected values come from another mechanization.
+    # 2e-5, because the expected values were computed with another mechanization.
     assert (north, east) == (pytest.approx(5869.9, rel=2e-5), pytest.approx(85141.9, rel=2e-5))
 
 
@@ -41,7 +45,9 @@ def test_delays_of_milliseconds_from_the_motion_itself(flown):
 @pytest.mark.parametrize('history', ['analytic', 'frozen'])
 def test_the_stream_continues_the_motion_backwards(flown, history):
     """
-    Streamed truth continues the motion before the first sample within 1e-3 (a constant rate: 4 %).
+    Streamed truth continues the motion before the first sample within 1e-3 of the error.
+
+    With a constant rate it would be 4 %.
     """
     runs = flown[0]
     streamed, itself = (largest(runs[source, history]) for source in ('stream', 'motion'))
@@ -53,7 +59,7 @@ def test_the_stream_continues_the_motion_backwards(flown, history):
 @pytest.mark.xdist_group('long delays')
 @pytest.mark.parametrize('history', ['analytic', 'frozen'])
 def test_the_prediction_is_within_its_bound(flown, history):
-    """The neglected second-order terms are found and are smaller than the stated bound."""
+    """The neglected second-order terms are present and smaller than the stated bound."""
     errors, predicted = flown[0]['motion', history], flown[1][history]
     n = len(predicted.t_s)
     off = np.abs(errors.position[::10][:n] - predicted.position).max(axis=0)
@@ -65,14 +71,16 @@ def test_the_prediction_is_within_its_bound(flown, history):
     assert relative < 4.4e-3 < bound
     assert off.max() < predicted.position_bound
     assert drift < predicted.drift_bound
-    # The bound has the order of the neglected terms, not of the error itself.
+    # The bound has the size of the neglected terms, not of the error itself.
     assert bound < 0.1
 
 
 @pytest.mark.parametrize('source', ['motion', 'stream'])
 def test_a_frozen_history_is_predicted(source):
     """
-    Frozen history, 1, 1, 1 us, 600 s: 0.0023 / 0.0001 m; an analytic one gives 0.018 / 0.73 m.
+    With a frozen history delays of 1 us err by 0.0023 / 0.0001 m in 600 s.
+
+    An analytic history gives 0.018 / 0.73 m.
     """
     values = {**MOTION_2, 'gyro.delay_us.x': 1.0, 'gyro.delay_us.z': 1.0, 'duration_s': 600.0,
               'source': source}
@@ -90,7 +98,7 @@ def test_a_frozen_history_is_predicted(source):
 @pytest.mark.parametrize('history', ['analytic', 'frozen'])
 def test_histories_of_every_output_are_predicted(output, model, history):
     """
-    5 ms on all channels and 7 ms on one accelerometer stay within the bound of the prediction.
+    Delays of 5 ms, and 7 ms on one accelerometer, stay within the bound of the prediction.
 
     A frozen history ends within an interval of the grid, 12.5 ms, in which the rotations due to
     both delays at 1.1 rad/s are assumed to grow evenly: at most g times 13 mrad times 12.5 ms, a
@@ -126,9 +134,7 @@ def test_long_turns_are_the_exact_response_of_the_channel():
 
 
 def test_predict_says_what_it_covers(capsys):
-    """
-    predict always states its bound, and that instrument errors are not included if they are on.
-    """
+    """predict states its bound, and which instrument errors are not included."""
     words = ['predict', *LATE_MOTION_2_WORDS, '-p', 'duration_s:=60.0']
     assert main(words) == 0
     said = ' '.join(capsys.readouterr().out.split())
@@ -143,7 +149,7 @@ def test_predict_says_what_it_covers(capsys):
 
 
 def test_no_number_stands_beside_an_error_that_it_does_not_cover(tmp_path, capsys, monkeypatch):
-    """With instrument errors on, table and figure omit the prediction, except beside the twin."""
+    """With instrument errors the prediction is omitted, except in the row of run minus twin."""
     from ins_sim.report.runs import page
     drawn = []
     draw = page.error_chart

@@ -1,4 +1,4 @@
-"""The prediction compared with simulation, and with itself computed in another way."""
+"""The prediction compared with simulation, and with a second way of computing it."""
 
 import numpy as np
 import pytest
@@ -59,8 +59,9 @@ def test_measured_drift_is_the_predicted_one(name, values, w, figures):
 @pytest.mark.parametrize('name, values, w', CASES, ids=NAMES)
 def test_fourier_sum_equals_time_mean(name, values, w):
     """
-    Fourier sum and time mean agree to first order in the delay; for delays of nanoseconds the
-    second order, k w tau, is below 1e-7.
+    The Fourier sum and the time mean of the drift agree to first order in the delay.
+
+    For delays of nanoseconds the second order, k w tau, is below 1e-7.
     """
     s = settings(values)
     generator, delay = s.motion_generator, s.imu_sensor.gyro.delay_us
@@ -75,9 +76,7 @@ def test_fourier_sum_equals_time_mean(name, values, w):
     pytest.param(MOTION_1, marks=pytest.mark.slow), MOTION_2, {**FLIGHT, 'motion.kind': 'cruise'}],
     ids=['motion 1', 'motion 2', 'cruise'])
 def test_linear_model_predicts_the_position_error(values):
-    """
-    The position error is predicted within 1 % of its largest value at every instant of 20 minutes.
-    """
+    """For 20 minutes the position error is predicted within 1 % of its largest value."""
     s = settings(values, duration_s=1200.0, output_every=10)
     result = run_offline(s)
     position = result.errors.position - result.twin.position
@@ -107,7 +106,7 @@ def test_linear_model_predicts_initial_errors():
 
 @pytest.mark.slow
 def test_both_resonances_of_motion_2_by_simulation():
-    """At theta = +30 deg the second resonance, psi' = -2 gamma', is the stronger one."""
+    """Motion 2 at theta = +30 deg: the second resonance, psi' = -2 gamma', is the stronger one."""
     drifts = {}
     for name, gamma_rate in (("psi' = 2 gamma'", 0.5), ("psi' = -2 gamma'", -0.5)):
         s = settings(MOTION_2, motion__theta_deg=30.0, duration_s=1000.0,
@@ -117,7 +116,7 @@ def test_both_resonances_of_motion_2_by_simulation():
         assert {n for n, rate, d in found if rate == 1.0} == {name}
         measured = run_offline(s, twin=False).errors.drift[-1]
         drifts[name] = np.linalg.norm(measured)
-        # The formula neglects the rotation of the Earth: Omega / gamma' of the larger resonance.
+        # The formula neglects the rotation of the Earth: Omega / gamma' at the larger resonance.
         bound = 7.3e-5 / 0.5 * max(map(np.linalg.norm, formula.values()))
         assert np.linalg.norm(measured - formula[name]) <= bound
         print(f'\n{name}: {measured * DEG_PER_HOUR} deg/h, formula '

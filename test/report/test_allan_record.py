@@ -1,5 +1,5 @@
 """
-The regular part of a recorded IMU: lost, repeated, late and invalid samples, and the true noise.
+The regular part of a recorded IMU: lost, repeated, late and invalid samples; true noise.
 
 Every record is white noise of known density, whatever happened to its stamps: the Allan deviation
 at one interval and the fitted N agree with it within four standard deviations.
@@ -33,7 +33,7 @@ def jitter(sigma_s):
 
 
 def check_density(found):
-    """Compare N with the truth: its relative deviation is at least 0.6/sqrt(readings)."""
+    """Compare N with the truth: its relative standard deviation is at least 0.6/sqrt(readings)."""
     for samples, size in ((found.imu.omega, 1.0), (found.imu.f, 2.0)):
         fitted = allan.fit_coefficients(allan.estimate_deviation(samples, found.rate_hz))
         ratio = fitted.random_walk * np.sqrt(found.rate_hz) / size
@@ -100,7 +100,7 @@ def test_readings_that_are_no_numbers_count_as_lost():
 
 
 def test_a_message_that_is_there_twice():
-    """A copy with the same stamp and values is left out; a different reading is not."""
+    """A message with the stamp and values of the one before is left out, others are not."""
     found = regular_record(record(EVEN)[np.insert(NUMBER, 500, 500)])
     assert found.notes == ('1 reading is present twice, with the same stamp and values; the '
                            'copies are removed',)

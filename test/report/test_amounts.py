@@ -10,5 +10,5 @@ from ins_sim.report.charts.scales import amount, LENGTHS, TIMES
     (LENGTHS, 0.0, '0 mm'), (LENGTHS, 63518.0, '63.5 km'), (TIMES, 10800.1, '3 h'),
     (TIMES, 3000.0, '50 min'), (TIMES, 99.9, '99.9 s')])
 def test_three_digits_and_no_exponent(units, value, text):
-    """A number with four digits before the point keeps all of them."""
+    """A number with four digits before the point is printed in full, without an exponent."""
     assert amount(units, value) == text

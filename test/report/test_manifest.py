@@ -1,4 +1,4 @@
-"""The manifest of a run names its noise and the machines with the same bits."""
+"""The manifest of a run names its noise and the machines that give the same bits."""
 
 from ins_sim import parameter_files
 from ins_sim.api.inputs import files
@@ -11,7 +11,7 @@ import yaml
 
 @pytest.fixture(autouse=True)
 def promised_machine(monkeypatch):
-    """Make the machine one of those for which equal bits are guaranteed."""
+    """Pretend to be a machine for which equal bits are guaranteed."""
     monkeypatch.setattr(manifest.platform, 'machine', lambda: 'x86_64')
 
 
@@ -24,7 +24,7 @@ def told(*texts, names=(), aided=False, own_motion=False):
 
 
 def test_a_written_run_has_it(tmp_path):
-    """The noise by generator and version, and that the bits are those of every machine."""
+    """The manifest names the noise generator with its version, and every x86-64 machine."""
     out = tmp_path / 'run'
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(out)]) == 0
     text = (out / 'manifest.yaml').read_text(encoding='utf-8')
@@ -34,7 +34,7 @@ def test_a_written_run_has_it(tmp_path):
 
 
 def test_what_is_the_same_on_one_machine_only(tmp_path, monkeypatch):
-    """Recorded motions, meter signals, own motions and other processors limit the promise."""
+    """Recorded motions, meter signals, a user's motion, other processors limit the promise."""
     recording = ('motion.kind:=recording', 'motion.recording.path:=somewhere.csv')
     flight = {'names': ['gnss_outage_flight', 'grade_mid'], 'aided': True}
     assert told(**flight) == {'noise': NOISE, 'bits': 'every x86-64 machine'}

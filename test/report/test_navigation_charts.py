@@ -45,7 +45,11 @@ def known(result, **values):
 
 
 def test_errors_have_the_units_in_which_they_read_well(navigated):
-    """Kilometres from 10 km on; horizontal and up in one panel, headings clockwise."""
+    """
+    Errors from 10 km on are drawn in km; horizontal and up share a panel.
+
+    Headings are clockwise.
+    """
     chart = drawn(known(navigated, position=(3e4, 4e4, -2e4), velocity=(0.3, 0.4, 0.2),
                         attitude=(np.radians(3.0), 0.0, np.radians(-5.0))))
     assert chart.title == 'Solution of the strapdown on a flight at 100 Hz, less truth'
@@ -60,9 +64,7 @@ def test_errors_have_the_units_in_which_they_read_well(navigated):
 
 
 def test_a_part_that_would_hide_the_other_has_its_own_panel(navigated):
-    """
-    A height error that grows fast has its own panel, so that the horizontal one stays readable.
-    """
+    """A height error that grows fast has its own panel, so that the horizontal one is readable."""
     chart = drawn(known(navigated, position=(30.0, 40.0, 2e4)))
     assert [panel.y_label for panel in chart.panels][:2] == ['horizontal position error [m]',
                                                              'height error [km]']
@@ -71,14 +73,14 @@ def test_a_part_that_would_hide_the_other_has_its_own_panel(navigated):
 
 
 def test_an_error_that_is_not_known_has_no_panel(navigated):
-    """Without an attitude in the reference there is no panel of attitude."""
+    """Without an attitude in the reference there is no panel of attitude errors."""
     comparison, = navigated.comparisons
     chart = drawn(replace(navigated, comparisons=[replace(comparison, attitude=None)]))
     assert not any('tilt' in p.y_label or 'attitude' in p.y_label for p in chart.panels)
 
 
 def test_two_references_are_told_apart(navigated):
-    """References differ by name and dash, in the colours of the components."""
+    """Two references differ by name and dash, with the colours of the components."""
     comparison, = navigated.comparisons
     both = replace(navigated, comparisons=[comparison, replace(comparison, name='odometry')],
                    references=[*navigated.references, navigated.references[0]])
@@ -88,7 +90,7 @@ def test_two_references_are_told_apart(navigated):
 
 
 def test_gaps_are_shaded(navigated):
-    """Nothing is drawn between segments; a bridged gap is marked as such."""
+    """Between segments nothing is drawn; a bridged gap is labelled as such."""
     assert marks(drawn(navigated), Stretch) == []
     restarted = drawn(run(*recorded(with_gap(0.5)), on_gap='restart'))
     stretch, = marks(restarted, Stretch)
@@ -100,7 +102,7 @@ def test_gaps_are_shaded(navigated):
 
 
 def test_a_curve_is_interrupted_where_nothing_is_known_for_long():
-    """A reference that is silent for 6 s is not connected."""
+    """A curve is interrupted where the reference is silent for 6 s."""
     imu, reference = recorded(stamps(100.0))
     heard = (reference.position.t_ns < 5 * SECOND) | (reference.position.t_ns > 11 * SECOND)
     position = SampledTrack(reference.position.t_ns[heard], reference.position.values[heard])
@@ -110,7 +112,7 @@ def test_a_curve_is_interrupted_where_nothing_is_known_for_long():
 
 
 def test_the_track_has_equal_axes(navigated):
-    """Solution and reference in metres from one origin; without errors they coincide."""
+    """Solution and reference are drawn in metres from one origin; without errors they coincide."""
     panel, = drawn(navigated, 'track').panels
     assert panel.equal and panel.x_label == 'east of the start [m]'
     solution, reference = (mark for mark in panel.marks if isinstance(mark, Curve))
@@ -122,7 +124,7 @@ def test_the_track_has_equal_axes(navigated):
 
 
 def test_a_solution_that_leaves_its_reference_has_a_second_panel(navigated):
-    """Without a second panel the track of the reference would be a dot."""
+    """A diverging solution has a second panel; otherwise the reference would shrink to a dot."""
     states, = navigated.states
     away = replace(states, lat=states.lat + np.linspace(0.0, 0.01, len(states.lat)))
     far, near = drawn(replace(navigated, states=[away]), 'track').panels
@@ -133,7 +135,7 @@ def test_a_solution_that_leaves_its_reference_has_a_second_panel(navigated):
 
 
 def test_without_a_reference_the_solution_is_drawn(navigated):
-    """Velocity and height are drawn; nothing is stated about errors."""
+    """Without a reference, velocity and height are drawn, and no error is stated."""
     alone = replace(navigated, comparisons=[], references=[])
     chart = drawn(alone)
     assert [panel.y_label for panel in chart.panels] == ['velocity [m/s]', 'height [m]']

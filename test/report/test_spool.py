@@ -21,7 +21,7 @@ def states(count):
 
 
 def stored(history, store, length=777):
-    """Return the history that a store makes of blocks."""
+    """Return the history that a store makes from blocks."""
     for block in history.blocks(length):
         store.append(block)
     return store.history()
@@ -29,7 +29,7 @@ def stored(history, store, length=777):
 
 @pytest.mark.parametrize('part', PARTS, ids=str)
 def test_parts_of_a_column_are_those_of_the_array(tmp_path, part):
-    """Rows and slices, also with steps longer than a block."""
+    """Rows and slices of a column equal those of the array, also with steps beyond a block."""
     history = states(COUNT)
     with spool.Spool(tmp_path) as spooled:
         read = stored(history, spooled.store())
@@ -45,7 +45,7 @@ def test_parts_of_a_column_are_those_of_the_array(tmp_path, part):
 
 @pytest.mark.parametrize('length', [1, 4096, 8192, 8193, 50000])
 def test_blocks_join_to_the_history(tmp_path, length):
-    """In memory and in files, for any block length."""
+    """Blocks of any length join to the history, in memory and in files."""
     history = states(9000)
     with spool.Spool(tmp_path) as spooled:
         for read in (stored(history, Collected()), stored(history, spooled.store())):
@@ -62,7 +62,7 @@ def test_a_store_without_blocks_has_no_history(tmp_path):
 
 
 def test_nothing_is_left_in_the_folder(tmp_path):
-    """The folder is empty even while the files are open, so that a killed process leaves none."""
+    """The folder is empty even while files are open, so that a killed process leaves none."""
     with spool.Spool(tmp_path) as spooled:
         read = stored(states(100), spooled.store())
         assert not list(tmp_path.iterdir())
@@ -71,7 +71,7 @@ def test_nothing_is_left_in_the_folder(tmp_path):
 
 
 def test_arrays_and_columns_are_saved_alike(tmp_path):
-    """NumPy reads arrays and columns; a column longer than the copy buffer is saved."""
+    """NumPy reads saved arrays and columns, also a column longer than the copy buffer."""
     history = states(COUNT)
     with spool.Spool(tmp_path) as spooled:
         read = stored(history, spooled.store())

@@ -1,4 +1,4 @@
-"""Arguments of a node on the command line besides its ROS arguments."""
+"""Arguments of a node on the command line other than its ROS arguments."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from ins_sim.ros.process.arguments import answer
 
 @pytest.mark.parametrize('name', ['strapdown', 'recorder', 'player'])
 def test_help(name, capsys):
-    """--help prints usage and parameters with unit and default; exit code 0."""
+    """--help prints usage and parameters with unit and default; the exit code is 0."""
     assert answer(name, [name, '--help']) == 0
     said = capsys.readouterr().out
     assert said.startswith(f'usage: {name} [--ros-args')
@@ -16,7 +16,7 @@ def test_help(name, capsys):
 
 
 def test_help_says_what_can_be_set_later(capsys):
-    """For the generator only its pace can be set later."""
+    """The help states that of the generator's parameters only its pace can be set at run time."""
     assert answer('motion_generator', ['motion_generator', '-h']) == 0
     said = capsys.readouterr().out
     assert said.count('can be set while the node runs') == 1
@@ -27,7 +27,7 @@ def test_help_says_what_can_be_set_later(capsys):
     (['strapdown', '--bogus'], '--bogus'), (['strapdown', '--ros-args', '--', 'more'], 'more'),
     (['strapdown', 'x\x1b[2J'], r'x\x1b[2J')])
 def test_what_is_no_ros_argument(words, bad, capsys):
-    """One message, exit code 2."""
+    """An argument that is no ROS argument gives one message and exit code 2."""
     assert answer('strapdown', words) == 2
     said = capsys.readouterr().err
     assert f'strapdown: unknown argument {bad}; expected ROS arguments after --ros-args' in said
@@ -35,7 +35,7 @@ def test_what_is_no_ros_argument(words, bad, capsys):
 
 
 def test_ros_arguments_are_left_to_ros():
-    """With or without the name of the program before them."""
+    """ROS arguments, with or without the program name before them, are passed on to ROS."""
     assert answer('strapdown', ['strapdown', '--ros-args', '-p', 'rate_hz:=5.0', '--']) is None
     assert answer('recorder', ['--ros-args', '-p', 'x:=1']) is None
     assert answer('recorder', []) is None

@@ -1,4 +1,4 @@
-"""A live lock-step run, recorded, is the bag that ``simulate --bag`` writes."""
+"""The bag of a live lock-step run equals that written by ``simulate --bag``."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
@@ -32,9 +32,7 @@ RELATIVE = 1e-12
 
 @pytest.mark.parametrize('values', [IDEAL, FOG], ids=['ideal', 'fog'])
 def test_live_is_offline_message_for_message(values, ros_domain, tmp_path):
-    """
-    The same topics with the same stamps; values to 1e-12 of their scale besides the rounding.
-    """
+    """Topics and stamps are equal; values agree to 1e-12 of their scale and the rounding above."""
     wanted = [topic.name for topic in (*topics.DATA, topics.CLOCK_TOPIC)]
     words = [f'{name}:={str(value).lower() if isinstance(value, bool) else value}'
              for name, value in {**values, 'source': 'stream'}.items()]

@@ -1,4 +1,4 @@
-"""Faulty streams: a node reports the fault on log and /diagnostics, and starts anew."""
+"""Faulty streams: a node reports the fault in its log and /diagnostics, and starts anew."""
 
 import time
 
@@ -19,7 +19,7 @@ DT = 10_000_000
 
 
 class Source:
-    """A node chain without generator, and truth at any stamps."""
+    """The nodes of a chain without generator, and truth at any stamps."""
 
     def __init__(self, domain, folder, parameters=None):
         self.chain = Chain(domain, folder)
@@ -64,7 +64,7 @@ class Source:
         self.listener.poll_until(lambda: t_ns in self.listener.heard['ins/odometry'], 30.0)
 
     def wait_diagnosis(self, node, part):
-        """Wait until /diagnostics contains this about a node."""
+        """Wait until /diagnostics contains this text about a node."""
         try:
             self.listener.spin_until(lambda: any(
                 node in name and part in message for name, _, message in self.diagnostics))
@@ -72,7 +72,7 @@ class Source:
             raise AssertionError(f'{node}: {part!r} not in {self.diagnostics}') from None
 
     def close(self):
-        """End everything."""
+        """End all processes."""
         self.chain.end()
         self.listener.close()
 
@@ -85,6 +85,7 @@ def source(ros_domain, tmp_path):
 
 
 def test_nan_is_dropped_and_reported(source):
+    """Truth with NaN is dropped and reported; solutions continue and are finite."""
     source.begin()
     source.send(np.arange(101, 201) * DT, poison=50)
     source.chain.wait_text(source.imu, 'nan')
@@ -95,6 +96,7 @@ def test_nan_is_dropped_and_reported(source):
 
 
 def test_a_jump_back_is_reported_and_starts_anew(source):
+    """Truth that jumps back by 1 s is reported by both nodes, and solutions start anew."""
     source.begin()
     source.listener.heard['ins/odometry'].clear()
     source.send(np.arange(0, 51) * DT)
@@ -105,6 +107,7 @@ def test_a_jump_back_is_reported_and_starts_anew(source):
 
 
 def test_a_gap_is_reported_and_never_integrated_over(source):
+    """A gap from 1 s to 3 s is reported, and no solution lies within it."""
     source.begin()
     source.send(np.arange(300, 351) * DT)
     source.chain.wait_text(source.imu, 'gap from 1.000000000 s to 3.000000000 s')
@@ -114,6 +117,7 @@ def test_a_gap_is_reported_and_never_integrated_over(source):
 
 
 def test_truth_that_stops_is_reported(source):
+    """If the truth stops, the log and /diagnostics name the missing topic."""
     source.begin()
     source.chain.wait_text(source.imu, 'no message on truth/imu')
     source.wait_diagnosis('imu_sensor', 'no message on truth/imu')
@@ -121,6 +125,7 @@ def test_truth_that_stops_is_reported(source):
 
 
 def test_imu_without_truth_is_reported(source):
+    """Without truth/odometry the strapdown reports it, and continues when it returns."""
     source.begin()
     silent, source._out[0] = source._out[0], (*source._out[0][:2], lambda data: None)
     source.send(np.arange(101, 201) * DT)
@@ -132,6 +137,7 @@ def test_imu_without_truth_is_reported(source):
 
 
 def test_imu_at_another_rate_is_reported(ros_domain, tmp_path):
+    """An IMU at twice the rate of the strapdown is reported with the expected step."""
     source = Source(ros_domain, tmp_path)
     other = source.chain.start('strapdown', {**PARAMETERS, 'rate_hz': 50.0},
                                ['-r', 'ins/odometry:=elsewhere', '-r', '__node:=other'])
@@ -150,6 +156,7 @@ def test_imu_at_another_rate_is_reported(ros_domain, tmp_path):
 
 
 def test_on_fault_stop_ends_with_code_3(ros_domain, tmp_path):
+    """With on_fault stop a jump back ends the node with exit code 3."""
     source = Source(ros_domain, tmp_path, {'on_fault': 'stop'})
     try:
         source.begin()

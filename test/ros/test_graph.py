@@ -27,7 +27,7 @@ FORWARD = ('motion_generator', 'imu_sensor', 'strapdown')
 
 def lock_step(domain, folder, order=FORWARD, values=VALUES, load=0, more=(), warns=False):
     """
-    Run the chain in lock-step and return {topic name: {stamp: doubles}}.
+    Run the chain in lock-step; return {topic name: {stamp: doubles}}.
 
     more: further topics to receive; warns: whether the nodes must warn, or must not.
     """
@@ -54,7 +54,7 @@ def lock_step(domain, folder, order=FORWARD, values=VALUES, load=0, more=(), war
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    The solution and its errors agree to 1e-9 relative, besides the rounding of a position.
+    Solution and errors agree with the offline run to 1e-9, and the rounding of positions.
 
     Truth and solution pass through Cartesian messages: 1 ulp of the radius of the Earth is 1e-9 m,
     and a position is a sum of a few such terms; an attitude rounds at 1e-15, and its first slope
@@ -95,7 +95,11 @@ DTG = {**VALUES, **TACTICAL, 'gyro.model': 'dtg', 'output': 'integrated', 'input
 
 
 def test_tuned_gyros_with_all_their_errors(ros_domain, tmp_path):
-    """Readings and parity are those of the offline run bit for bit, with late, jittered stamps."""
+    """
+    Tuned gyros with late, jittering stamps have the readings and parity of the offline run.
+
+    They agree to the bit.
+    """
     heard = lock_step(ros_domain, tmp_path, values=DTG, more=(topics.IMU_PARITY,))
     run = same_as_offline(DTG, heard)
     imu, parity = heard['imu/data_raw'], heard['imu/parity']
@@ -116,6 +120,7 @@ def test_drop_outs(ros_domain, tmp_path):
 
 
 def test_twice_the_same_bits_once_under_load_in_any_order(ros_domain, tmp_path):
+    """A second run, under load and with another order of start, gives the same bits."""
     first = lock_step(ros_domain, tmp_path)
     (tmp_path / 'again').mkdir()
     again = lock_step(ros_domain, tmp_path / 'again', tuple(reversed(FORWARD)), load=3)

@@ -28,7 +28,7 @@ def attacked(seed, count):
             flight.calm()
         print(f'\nseed {seed}: {sum(flight.tried.values())} hostile messages; one led to at most '
               f'{flight.most_sent} of the nodes; a node held at most {flight.most_bytes} bytes')
-        # The bounds reject all these messages before the safety net.
+        # The plausibility bounds reject all these messages; no unexpected exception occurs.
         assert not flight.rescued
         kinds = Counter()
         for (kind, _), number in flight.tried.items():
@@ -40,14 +40,18 @@ def attacked(seed, count):
 
 @pytest.mark.parametrize('seed', [1, 2])
 def test_ten_thousand_hostile_messages(seed, ros_domain):
-    """No exception, finite output, bounded work, memory and log; all nodes recover."""
+    """
+    Ten thousand hostile messages: no exception, finite output, bounded memory and log.
+
+    All nodes recover.
+    """
     attacked(seed, 10_000)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('variant', range(1, len(VARIANTS)))
 def test_hostile_messages_to_nodes_of_other_settings(variant, ros_domain):
-    """Sources, outputs, errors, channels, modes and filters: all nodes recover."""
+    """With other sources, outputs, errors, channels, modes and filters all nodes recover."""
     with HostileFlight(variant, variant=variant) as flight:
         flight.good(50)
         flight.attack(2000)
@@ -58,7 +62,7 @@ def test_hostile_messages_to_nodes_of_other_settings(variant, ros_domain):
 @pytest.mark.slow
 @pytest.mark.parametrize('seed', [3, 4])
 def test_fifty_thousand_hostile_messages(seed, ros_domain):
-    """The same for longer; tools/fuzz_nodes.py continues with two million."""
+    """Fifty thousand hostile messages; tools/fuzz_nodes.py continues with two million."""
     attacked(seed, 50_000)
 
 

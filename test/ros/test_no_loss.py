@@ -13,7 +13,7 @@ pytestmark = pytest.mark.live
                          ids=['real time at 1 kHz', 'lock-step'])
 def test_no_solution_is_lost(rate_hz, duration_s, factor, ros_domain, tmp_path):
     """
-    From the first solution on, the listener receives every one to the last instant.
+    From the first received solution on, the listener receives every one to the last instant.
 
     Messages sent before DDS discovery are received by no node. Speed and latency of the same runs
     are printed by benchmarks/live_chain.py.

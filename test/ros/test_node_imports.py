@@ -11,7 +11,7 @@ from support.places import ROOT
 @pytest.mark.parametrize('node', ['motion_generator', 'imu_sensor', 'strapdown', 'gnss',
                                   'velocity_meter', 'aided_navigator'])
 def test_a_node_imports_nothing_heavy(node):
-    """SciPy, Numba and matplotlib are not imported by a starting node."""
+    """A starting node does not import SciPy, Numba or matplotlib."""
     pytest.importorskip('rclpy')
     code = (f'import sys, ins_sim.ros.nodes.{node}\n'
             'heavy = {"scipy", "numba", "matplotlib", "rosbags", "rich"}\n'
@@ -25,7 +25,7 @@ def test_a_node_imports_nothing_heavy(node):
     ([], 'usage: python -m ins_sim.ros.main NODE'),
     (['nonsense'], "unknown node 'nonsense'; usage: python -m ins_sim.ros.main NODE")])
 def test_no_node_is_exit_code_2(words, said, capsys):
-    """The code is that of bad parameters; the message lists the nodes."""
+    """Without the name of a node the exit code is 2, and the message lists the nodes."""
     assert main(words) == 2
     error = capsys.readouterr().err
     assert error.startswith(said) and 'aided_navigator' in error and error.count('\n') == 1

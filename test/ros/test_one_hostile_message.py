@@ -14,7 +14,7 @@ IMU_DOUBLES, ODOMETRY_DOUBLES = 37, 85
 
 
 class Amid(HostileFlight):
-    """A flight of all nodes, and its last good messages."""
+    """A flight of all nodes that gives access to its last good messages."""
 
     def last(self, topic):
         """Return the last good message of a topic."""
@@ -60,9 +60,9 @@ def with_double(data, count, index, value):
     (topics.TRUTH_IMU, IMU_DOUBLES, 13, 1e200, 'imu_sensor', 'holds the angular velocity (1e+200'),
     (topics.INS_ODOMETRY, ODOMETRY_DOUBLES, 44, float('nan'), 'velocity_meter', 'nan')])
 def test_one_finite_number_beyond_all_bounds(topic, count, index, value, node, says, flight):
-    """It is dropped with its name, and the very next sample is processed normally."""
+    """A finite value beyond the bound is dropped with its name; the next sample is processed."""
     flight.send(topic, with_double(flight.last(topic), count, index, value))
-    # Messages from the polled queue are processed with the next sample.
+    # Messages of a polled queue are processed with the next sample.
     flight.good(1)
     assert says in flight.said(node)
     flight.calm(20 if topic != topics.INS_ODOMETRY else 100)
@@ -72,14 +72,14 @@ def test_one_finite_number_beyond_all_bounds(topic, count, index, value, node, s
 @pytest.mark.parametrize('data', [b'\x00\x01\x00', b'\x00\x00\x00\x00' + bytes(8),
                                   b'\x00\x07\x00\x00' + bytes(9), b''])
 def test_a_malformed_answer_is_dropped(data, flight):
-    """On sim/ack of the generator, with one message that names the topic."""
+    """A malformed acknowledgement to the generator is dropped; one message names sim/ack."""
     flight.send(topics.ACK, data)
     assert 'sim/ack: std_msgs/msg/Header' in flight.said('motion_generator')
     flight.calm(10)
 
 
 def test_instants_of_400_digits_are_no_fix(flight):
-    """Neither the navigator nor its diagnostics a second later fail."""
+    """A fix with an instant of 25 digits makes neither the navigator nor diagnostics fail."""
     stamp_ns, frame, (status,) = diagnostic_array.read_diagnostics(
         flight.last(topics.METER_RECORD))
     for key in ('window_start_ns', 'window_end_ns', 'arrival_ns', 'cycles'):
@@ -95,7 +95,7 @@ def test_instants_of_400_digits_are_no_fix(flight):
 
 
 def test_two_strays_a_day_apart_make_nobody_compute_for_minutes(flight):
-    """Truth at 1 000 000 s and at 1 020 000 s: two messages, and no reading in between."""
+    """Truth at 1 000 000 s and 1 020 000 s gives two messages, and no readings in between."""
     for stamp_s in (1_000_000, 1_020_000):
         data = flight.last(topics.TRUTH_IMU)
         flight.send(topics.TRUTH_IMU, data[:4] + struct.pack('<iI', stamp_s, 0) + data[12:])
@@ -106,7 +106,7 @@ def test_two_strays_a_day_apart_make_nobody_compute_for_minutes(flight):
 
 
 def test_one_solution_that_is_ahead_disables_nothing(flight):
-    """One ins/odometry a second ahead: all windows continue except the one it falls into."""
+    """One ins/odometry a second ahead invalidates only the window in which it lies."""
     flight.send(topics.INS_ODOMETRY, moved(flight.last(topics.INS_ODOMETRY), SECOND))
     flight.good(150)
     valid = flight.fed.bus.sent[topics.METER_VELOCITY.name]
@@ -115,7 +115,7 @@ def test_one_solution_that_is_ahead_disables_nothing(flight):
 
 
 def test_a_second_strapdown_disables_nothing(flight):
-    """Every solution twice, one of them late: the windows still have their angle."""
+    """If every solution comes twice, one of them late, the windows still have their angle."""
     valid = flight.fed.bus.sent[topics.METER_VELOCITY.name]
     for _ in range(300):
         late = flight.last(topics.INS_ODOMETRY)
@@ -125,9 +125,7 @@ def test_a_second_strapdown_disables_nothing(flight):
 
 
 def test_another_epoch_is_named_and_kills_nobody(ros_domain):
-    """
-    Two generators with two epochs: the truth that is not announced is reported; no node ends.
-    """
+    """If two generators have different epochs, the stray truth is reported and no node ends."""
     with Amid(1) as flight:
         flight.good(1)
         other = RunAnnouncement(1000 * SECOND, 0, 100.0, 60 * SECOND)
@@ -165,7 +163,7 @@ def test_reset_brings_a_node_back(node, flight):
 
 
 def test_what_nobody_foresaw_is_a_fault(flight):
-    """The safety net: an exception in a stage is one message, and the node starts anew."""
+    """An unexpected exception in a stage is reported once, and the node starts anew."""
     strapdown, calls = flight.fed.nodes['strapdown'], []
 
     def fails(*sample):

@@ -1,4 +1,4 @@
-"""Parameter files read without ROS mean what rcl makes of them: names, types, values, refusals."""
+"""Parameter files read offline agree with rcl: names, types, values, and refusals."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ SCALARS = (
     '{a: 1}', '{}', '[{a: 1}]', '[1, {b: 2}]', '&x 1', '*x', '<<',
     '|\n     5\n', '>-\n     5\n', '>-\n     a\n', '- 1\n     - 2')
 
-# A scalar is tried alone, within a list, within a group, and as an assignment.
+# A scalar is tried alone, in a list, in a group, and as an assignment.
 PLACES = ('/**:\n  ros__parameters:\n    k: {}\n    z: 1\n',
           '/**:\n  ros__parameters:\n    k: [{}]\n',
           '/**:\n  ros__parameters:\n    g: {{k: {}}}\n')
@@ -58,7 +58,7 @@ FILES = (
 COMMON = '/**: {ros__parameters: {a: 1, g: {d: 1}}}\n/n: {ros__parameters: {b: 1}}'
 NODE = 'n: {ros__parameters: {a: 7, b: 7, g: {d: 7}}}'
 AGAIN = '/**: {ros__parameters: {a: 9, b: 9, g: {d: 9}, g.e: 1}}'
-# Files end with }, assignments contain :=; they are given in this order.
+# Files end with }, assignments contain :=; they are passed in this order.
 ORDERS = (
     (COMMON, 'a:=2'), (COMMON, 'b:=2'), ('b:=2', COMMON), (COMMON, 'n:b:=2'), (COMMON, NODE),
     (NODE, COMMON), (COMMON, NODE, AGAIN), (NODE, AGAIN, 'b:=3'), (AGAIN, AGAIN, 'g.d:=3'),
@@ -66,7 +66,7 @@ ORDERS = (
     (AGAIN, 'a:=[1]'), ('a:=1', 'a:=2'), ('a:=1.5', 'a:=2'), ('a:=',), ('m:a:=1',),
     ('a:={b: 1}',), ('a:=b: c',), ('a:=*x',), ('a:=5 # x',), ('a:=  5',), ('a:=5\n---\n6',),
     ('a:=#x',), ('a:=[',), ('a:=' + '[' * 1200,), ('a:=a:=b',), ('a.b:=1',),
-    # rate_hz of /** is that of the file, duration_s that of the node after it.
+    # rate_hz of /** is that of the file, duration_s that of the node section after it.
     ('/**:\n  ros__parameters: {rate_hz: 100.0}\n/**/n:\n  ros__parameters: {duration_s: 0.2}',
      'rate_hz:=50.0', 'duration_s:=1.0'))
 
@@ -85,7 +85,7 @@ def table():
         yield from ((given, node) for given in ORDERS)
 
 
-# Standard input: JSON, a list of [arguments behind --ros-args, full name of a node]; standard
+# Standard input: JSON, a list of [arguments after --ros-args, full name of a node]. Standard
 # output: for each {name: [type, value]}, or the text of a refusal.
 ASK_RCL = '''
 import json
@@ -127,12 +127,12 @@ TYPES = {bool: 'BOOL', int: 'INTEGER', float: 'DOUBLE', str: 'STRING'}
 
 
 def is_assignment(text):
-    """Return whether a text of the table is an assignment (otherwise a file)."""
+    """Return whether a text of the table is an assignment (otherwise it is a file)."""
     return ':=' in text
 
 
 def offline(given, node):
-    """Return {name: [type, value]} as ASK_RCL does; a text for a refusal."""
+    """Return {name: [type, value]} like ASK_RCL, or the text of a refusal."""
     parameters = Parameters()
     try:
         for text in given:
@@ -159,7 +159,7 @@ def described(value):
 
 def test_offline_reads_as_rcl_does(ros_domain, tmp_path):
     """
-    The result for every file and assignment of the table is the same; refusals agree too.
+    For every file and assignment of the table the offline result and refusal are those of rcl.
 
     Not in the table: ``[1:30]`` and ``%YAML 1.2``, on which versions of libyaml differ, and
     hexadecimal numbers below 2.2e-308.

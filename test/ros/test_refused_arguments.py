@@ -16,7 +16,7 @@ RCL = RuntimeError("failed to initialize rcl: Couldn't parse\n at /src/arguments
     (['-p', 'rate_hz:=[1.0, 2]'], "-p rate_hz:=[1.0, 2] has '2' in a list of numbers with a "),
     (['-r', '__ns:=?'], "failed to initialize rcl: Couldn't parse at /src/arguments")])
 def test_a_refusal_of_rcl_is_one_sentence(words, says, tmp_path, monkeypatch):
-    """A missing file names the nearest shipped one; refusals of rcl itself keep its words."""
+    """A missing file is answered with the nearest shipped one; refusals of rcl keep their text."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'here.yaml').write_text('/**: {ros__parameters: {')
     text = sentence(RCL, ['strapdown', '--ros-args', *words])
@@ -24,7 +24,11 @@ def test_a_refusal_of_rcl_is_one_sentence(words, says, tmp_path, monkeypatch):
 
 
 def test_names_of_shipped_files_become_paths(tmp_path, monkeypatch):
-    """Only in ROS arguments; a file with that name in the working directory takes precedence."""
+    """
+    In ROS arguments the name of a shipped file becomes its path.
+
+    A file with that name in the working directory takes precedence.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'cruise').write_text('')
     words = ['strapdown', '--params-file', 'motion_2', '--ros-args', '--params-file', 'motion_2',
@@ -35,7 +39,7 @@ def test_names_of_shipped_files_become_paths(tmp_path, monkeypatch):
 
 
 def test_a_node_says_it(chain):
-    """The exit code is that of bad parameters; the name of a shipped file is accepted."""
+    """A node exits with the code of bad parameters; the name of a shipped file is accepted."""
     node = chain.start('strapdown', {}, ['--params-file', 'motion_2', '--params-file', 'motin_2'])
     assert node.wait(60.0) == 2
     assert "no config named 'motin_2'; expected one of" in chain.text(node)

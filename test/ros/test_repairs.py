@@ -1,4 +1,4 @@
-"""Lost messages are resent soon while a node runs, and before it ends."""
+"""Lost messages are resent soon while a node runs, and before it exits."""
 
 from importlib import metadata
 import os
@@ -22,7 +22,7 @@ RATE_HZ = 1000
 
 @pytest.fixture
 def chain(ros_domain, tmp_path, monkeypatch):
-    """Yield a Chain whose nodes must find the profile themselves, and end it."""
+    """Yield a Chain whose nodes must find the middleware profile themselves, and end it."""
     for variable, _ in (BEFORE_3, FROM_3):
         monkeypatch.delenv(variable, raising=False)
     chain = Chain(ros_domain, tmp_path)
@@ -36,7 +36,11 @@ RELEASES = {'7.1.6': [BEFORE_3], '9.1.2': [FROM_3], 'odd': [BEFORE_3, FROM_3],
 
 @pytest.mark.parametrize('version', RELEASES)
 def test_a_profile_that_the_user_has_named_stays(version, monkeypatch):
-    """Otherwise it is ours, for Jazzy, for Kilted, and for both if rclpy is unknown."""
+    """
+    A profile set by the user is kept; otherwise ours is used, for Jazzy, Kilted, or both.
+
+    Both are set if the version of rclpy is unknown.
+    """
     def installed(name):
         if version is None:
             raise metadata.PackageNotFoundError(name)
@@ -56,7 +60,7 @@ def test_a_profile_that_the_user_has_named_stays(version, monkeypatch):
 @pytest.mark.parametrize('name, element', [('fastdds', 'heartbeatPeriod'),
                                            ('fastdds3', 'heartbeat_period')])
 def test_writers_ask_what_readers_miss_every_tenth_of_a_second(name, element):
-    """The heartbeat of our profile, as each release spells it; Fast DDS alone uses 3 s."""
+    """The heartbeat of our profile is 0.1 s in the syntax of each release; the default is 3 s."""
     root = ElementTree.parse(resources.middleware_profile(name)).getroot()
     period, = (e for e in root.iter() if e.tag.endswith(element))
     assert {e.tag.split('}')[-1]: e.text for e in period} == {'nanosec': '100000000'}
@@ -64,7 +68,11 @@ def test_writers_ask_what_readers_miss_every_tenth_of_a_second(name, element):
 
 @pytest.mark.live
 def test_the_middleware_takes_the_profile(chain):
-    """A profile in the syntax of another release is refused, and heartbeats are 3 s."""
+    """
+    Fast DDS accepts the profile; one in the syntax of another release is refused.
+
+    The heartbeat would then be 3 s.
+    """
     node = chain.start('motion_generator', {'motion.kind': 'racetrack', 'duration_s': 0.1})
     assert node.wait(GUARD_S) == 0
     text = chain.text(node)
@@ -74,7 +82,7 @@ def test_the_middleware_takes_the_profile(chain):
 @pytest.mark.live
 def test_the_last_messages_come_though_they_were_dropped(chain, tmp_path):
     """
-    A recorder that is suspended until the generator would have ended receives everything.
+    A recorder suspended until the generator would have ended receives every message.
 
     The shared-memory segment is 512 KiB; several times that is sent in the meantime.
     """

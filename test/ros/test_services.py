@@ -18,7 +18,7 @@ def chain(ros_domain, tmp_path):
 
 
 def fails(chain, node, parameters, code, arguments=()):
-    """Start a node, expect an exit code, and return its one message."""
+    """Start a node that must end with an exit code; return its one message."""
     process = chain.start(node, parameters, arguments)
     assert process.wait(60.0) == code, chain.text(process)
     text = chain.text(process)
@@ -41,17 +41,20 @@ def fails(chain, node, parameters, code, arguments=()):
     ('strapdown', {'frames.prefix': 'uav1/'}, 'expected no slash at its ends, as in uav1'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(chain, node, parameters, sentence):
+    """An invalid parameter of a node gives one message and exit code 2."""
     text = fails(chain, node, parameters, 2)
     assert sentence in text and text.count('\n') == 1
 
 
 def test_a_parameter_file_that_is_none_is_code_2(chain, tmp_path):
+    """An invalid parameter file gives exit code 2."""
     path = tmp_path / 'bad.yaml'
     path.write_text('/**: [1, {\n')
     fails(chain, 'strapdown', {}, 2, ['--params-file', str(path)])
 
 
 def test_whole_numbers_serve_as_floats(chain, ros_domain):
+    """Integers are accepted for floats; descriptors have unit, range and choices."""
     listener = Listener(ros_domain, ())
     try:
         from rcl_interfaces.srv import DescribeParameters, GetParameters
@@ -71,6 +74,7 @@ def test_whole_numbers_serve_as_floats(chain, ros_domain):
 
 
 def test_namespace_and_remapping(chain, ros_domain):
+    """Nodes in a namespace with a remapped topic receive all 301 samples."""
     heard = (topics.TRUTH_IMU, topics.IMU_RAW, topics.INS_ODOMETRY)
     listener = Listener(ros_domain, heard, namespace='/ship')
     rules = ['-r', '__ns:=/ship', '-r', 'imu/data_raw:=imu/other']
@@ -90,12 +94,14 @@ def test_namespace_and_remapping(chain, ros_domain):
 
 
 def test_a_missing_consumer_is_named_with_code_4(chain):
+    """Without the required consumers the generator names them and exits with code 4."""
     text = fails(chain, 'motion_generator', {**FAST, 'pacing.timeout_s': 1.0,
                                              'pacing.required': '[strapdown, camera]'}, 4)
     assert 'strapdown, camera' in text
 
 
 def test_pause_step_reset_and_status(chain, ros_domain):
+    """~/pause, ~/step and ~/reset act on the samples, and sim/status follows."""
     from std_msgs.msg import String
     from std_srvs.srv import SetBool, Trigger
     from ins_sim.ros.transport.qos import latched_profile
@@ -127,6 +133,7 @@ def test_pause_step_reset_and_status(chain, ros_domain):
 
 
 def test_clock_and_use_sim_time(chain, ros_domain):
+    """With use_sim_time the run is complete, and /clock ends 3 s after the epoch."""
     listener = Listener(ros_domain, (topics.CLOCK_TOPIC,))
     try:
         chain.start('strapdown', {**FAST, 'use_sim_time': True})
@@ -142,9 +149,7 @@ def test_clock_and_use_sim_time(chain, ros_domain):
 
 
 def test_an_injected_fault_is_seen(chain, ros_domain):
-    """
-    The service ~/fault makes a channel fail; imu/parity and /diagnostics show it, and then stop.
-    """
+    """A fault injected by ~/fault appears in imu/parity and /diagnostics, and then ends."""
     from std_srvs.srv import SetBool
     dtg = {'gyro.model': 'dtg', 'output': 'integrated', 'gyro.dtg.fault.channel': 'gyro_2_z',
            'gyro.dtg.fault.bias_deg_h': 500.0, 'gyro.dtg.fault.start_s': -1.0,

@@ -1,4 +1,4 @@
-"""A signal ends every node with code 0 and without a traceback, whenever it comes."""
+"""A signal at any time ends every node with code 0 and without a traceback."""
 
 import random
 import signal
@@ -33,7 +33,7 @@ for _ in range(5000):
 @pytest.mark.parametrize('name', SIGNALS)
 def test_signals(name, ros_domain, tmp_path):
     """
-    30 of 30 tries, five of each node, while the nodes exchange messages.
+    30 of 30 signals, five to each node, end it cleanly while nodes exchange messages.
 
     Some signals arrive while the process still imports, some while it publishes.
     """
@@ -57,7 +57,7 @@ def test_signals(name, ros_domain, tmp_path):
 
 
 def test_signals_in_the_moment_of_a_change_of_handlers():
-    """Many signals: some arrive within signal.signal itself, and nothing is printed."""
+    """Of many signals some arrive within signal.signal itself, and nothing is printed."""
     with subprocess.Popen([sys.executable, '-c', HANDLERS], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as process:
         process.stdout.readline()
@@ -71,12 +71,12 @@ def test_signals_in_the_moment_of_a_change_of_handlers():
 
 
 def test_a_node_that_hangs_in_its_end_ends():
-    """Blocked in C with the interpreter locked, as Fast DDS may be: the intended exit code."""
+    """A node blocked in C with the interpreter locked, as by Fast DDS, exits with its code."""
     code = ('import ctypes\n'
             'from ins_sim.ros.process.last_resort import exit_within\n'
             'exit_within(1, 3)\n'
             'ctypes.PyDLL(None).sleep(60)\n')
     start = time.monotonic()
     assert subprocess.run([sys.executable, '-c', code], timeout=GUARD_S).returncode == 3
-    # Not before its second, and not after the 60 s for which it is blocked.
+    # Not before one second, and not after the 60 s for which it is blocked.
     assert 1.0 <= time.monotonic() - start < 60.0

@@ -15,7 +15,7 @@ NODES = ('recorder', 'strapdown', 'imu_sensor', 'motion_generator')
 
 
 def test_a_short_soak(ros_domain, tmp_path):
-    """Exit code 0; losses, latency, memory, handles, CPU and load are printed."""
+    """The exit code is 0; losses, latency, memory, handles, CPU and load are printed."""
     ended = subprocess.run(
         [sys.executable, ROOT / 'tools' / 'soak.py', '10', '100', tmp_path / 'soak'],
         env={**os.environ, 'PYTHONPATH': str(ROOT)}, capture_output=True, text=True,

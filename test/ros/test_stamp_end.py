@@ -17,7 +17,11 @@ def endless(epoch_s):
 
 
 def test_an_endless_run_ends_with_its_stamps():
-    """The last sample can be packed, 10 s before the end, because readings have later stamps."""
+    """
+    The last sample is 10 s before the end of stamps, because readings have later stamps.
+
+    This sample can be packed.
+    """
     source = endless(2147483600)
     assert source.endless and source.count == 3801
     index = topics.TRUTH.index(topics.TRUTH_IMU)
@@ -31,7 +35,7 @@ def test_an_endless_run_ends_with_its_stamps():
 
 @pytest.mark.live
 def test_the_generator_says_so(chain):
-    """Exit code 0 and one message."""
+    """At the end of the stamps the generator exits with code 0 and one message."""
     generator = chain.start('motion_generator', {
         'duration_s': 0.0, 'time.epoch_s': 2147483636, 'motion.kind': 'static'})
     assert generator.wait(60.0) == 0, chain.text(generator)

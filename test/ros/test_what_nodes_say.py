@@ -1,4 +1,4 @@
-"""Log messages of nodes are bounded and name the fault: kinds, texts, publishers, losses."""
+"""Log messages of nodes are limited and name the fault, the publishers and the losses."""
 
 from types import SimpleNamespace
 
@@ -21,7 +21,7 @@ def log(monkeypatch):
 
 
 def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
-    """Two warnings a second for ten minutes are fifteen lines, with the count of the others."""
+    """Two warnings a second for ten minutes give fifteen lines, with the number of the others."""
     for k in range(1200):
         log.said.say(f'imu comes at another rate from {k / 2} s; expected 0.01 s')
         log.clock.now_s += 0.5
@@ -31,7 +31,7 @@ def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
     assert log.lines[1].endswith('(1 more of this kind before it)')
     assert log.lines[2].endswith('(3 more of this kind before it)')
     assert log.lines[-1].endswith('(127 more of this kind before it)')
-    # After a pause it is logged at once.
+    # After a pause the message is logged without a delay.
     log.clock.now_s += 200.0
     log.said.say('imu comes at another rate from 1 s; expected 0.01 s')
     log.clock.now_s += 1.0
@@ -40,7 +40,11 @@ def test_a_kind_is_said_once_and_then_more_and_more_rarely(log):
 
 
 def test_thousands_of_different_texts_are_few_lines(log):
-    """3000 kinds in 5 s: 20 lines at once, two a second, and the number of suppressed ones."""
+    """
+    3000 kinds of message in 5 s give 20 lines at first, then two a second.
+
+    The number of suppressed lines is stated.
+    """
     for k in range(3000):
         log.said.say(f'a message holds what nobody knows: {"x" * (k % 300)}')
         log.clock.now_s += 5.0 / 3000
@@ -53,14 +57,14 @@ def test_thousands_of_different_texts_are_few_lines(log):
     ('plain', 'plain'), ('\x1b[31mred', '\\x1b[31mred'), ('a\nb\tc', 'a\\nb\\tc'),
     ('\u202eback', '\\u202eback'), ('\ud800', '\\ud800'), ('Grüße', 'Grüße')])
 def test_texts_are_cut_and_made_visible(text, shown):
-    """No escape sequence reaches a terminal, and no text fills a disk."""
+    """Escape sequences are made visible, and long texts are truncated."""
     assert said.short(text) == shown
     long = said.short(text * 10_000, 20)
     assert len(long) < 220 and long.isprintable() and long.endswith('characters)')
 
 
 def test_the_lock_step_complaint_is_a_line():
-    """4000 names of 10 kB on sim/ack: ten of them, truncated, and that there are others."""
+    """Of 4000 names of 10 kB on sim/ack ten are shown, truncated, with the number of others."""
     lock = LockStep(('strapdown',), 10, 30.0)
     for k in range(4000):
         lock.ack(f'{k}\x1b' + 'x' * 10_000, 0, 5)
@@ -74,7 +78,7 @@ def test_the_lock_step_complaint_is_a_line():
 
 
 def test_two_publishers_are_named():
-    """Two generators are reported by both, and by their readers, with their names."""
+    """Two generators are reported by name by both of them and by their readers."""
     from ins_sim.ros.process.publishers import SolePublishers
     from ins_sim.ros.transport.qos import data_profile
     infos = [SimpleNamespace(node_name=name, node_namespace='/run', qos_profile=data_profile(1))
@@ -93,7 +97,11 @@ def test_two_publishers_are_named():
 
 
 def test_losses_are_told_from_a_wrong_rate():
-    """By the numbers of the publishers: the advice is about load and topics.depth."""
+    """
+    Losses found by message numbers lead to advice about load and topics.depth.
+
+    A wrong rate leads to other advice.
+    """
     from ins_sim.ros.process.publishers import MessageLosses
     queue = SimpleNamespace(gaps=Gaps(), dropped=0)
     losses = MessageLosses({'truth/odometry': queue}, 500)
@@ -112,9 +120,7 @@ def test_losses_are_told_from_a_wrong_rate():
 
 @pytest.mark.parametrize('may_drop', [True, False])
 def test_an_old_backlog_is_dropped_in_real_time_alone(may_drop, monkeypatch):
-    """
-    Messages older than 5 s are dropped if nobody waits for an acknowledgement; otherwise none.
-    """
+    """Messages older than 5 s are dropped unless somebody waits for an acknowledgement."""
     from ins_sim.messages import topics
     from ins_sim.ros.transport import backlog
     clock, taken = ToldClock(), []
@@ -135,7 +141,11 @@ def test_an_old_backlog_is_dropped_in_real_time_alone(may_drop, monkeypatch):
 
 
 def test_the_net_takes_whatever_is_raised():
-    """One message with type, cause and place; exceptions that end a process pass."""
+    """
+    An unexpected exception gives one message with type, cause and place.
+
+    Exceptions that end a process are passed on.
+    """
     told = []
 
     def divide(a, b):

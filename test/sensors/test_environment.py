@@ -34,7 +34,7 @@ def test_the_field_is_the_published_one(year, height, lat, lon, north, east, dow
 
 
 def test_a_missing_model_is_said_in_one_sentence(monkeypatch):
-    """If the magnetic model is missing, one sentence names the package and how to get it."""
+    """If the magnetic model is missing, one message names the package and how to get it."""
     monkeypatch.setitem(sys.modules, 'pygeomag', None)
     magnetic_field._model.cache_clear()
     with pytest.raises(ValueError, match='magnetometer.publish is true and pygeomag cannot be '
@@ -43,7 +43,7 @@ def test_a_missing_model_is_said_in_one_sentence(monkeypatch):
 
 
 @pytest.mark.parametrize('height, expected', [
-    # U.S. Standard Atmosphere 1976, at geopotential heights
+    # U.S. Standard Atmosphere 1976, at geopotential heights.
     (0.0, 101325.0), (1000.0, 89874.6), (11000.0, 22632.06), (20000.0, 5474.889),
     (32000.0, 868.0187), (47000.0, 110.9063), (51000.0, 66.93887), (71000.0, 3.956420)])
 def test_the_pressure_is_that_of_the_standard_atmosphere(height, expected):
@@ -87,7 +87,7 @@ def test_noise_is_by_index_and_seed():
         readings.append(found)
     assert readings[0] == readings[1] and len(readings[0]) == 4000
     rows = np.array(list(readings[0].values()))
-    # Forward is north, so east is to the right, and the second axis is to the left.
+    # Forward is north, so that east is to the right; the second axis is to the left.
     assert rows.mean(axis=0) == pytest.approx([0.0, -5e-5, 0.0], abs=6e-9)
     assert rows.std(axis=0) == pytest.approx([1e-7] * 3, rel=0.05)
     barometer, other = Barometer(settings), Barometer(build(ImuSensorSettings,
@@ -115,7 +115,7 @@ def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypa
         field, air = (bag.arrays(topic.name) for topic in (topics.IMU_MAG, topics.IMU_PRESSURE))
         data, raw = (bag.arrays(topic.name) for topic in (topics.IMU_DATA, topics.IMU_RAW))
         odometry = bag.arrays('ins/odometry')
-    # The truth arrives every 10 ms; the first sample in each 25 ms is used.
+    # The truth has 10 ms; the first sample in each 25 ms is used.
     assert (field['stamp_ns'][:5] - 10**9 * EPOCH_S).tolist() == [
         0, 30_000_000, 50_000_000, 80_000_000, 100_000_000]
     assert len(field) == 4001 and len(air) == 501
@@ -123,7 +123,7 @@ def test_the_bag_of_a_run_holds_them_where_they_are_asked_for(tmp_path, monkeypa
     assert field['magnetic_field_covariance'] == pytest.approx(
         np.tile(np.diag([1e-14] * 3).ravel(), (4001, 1)), rel=1e-12)
     assert (air['variance'] == 1e-4).all() and np.ptp(air['fluid_pressure']) < 1e-3
-    # The IMU with the orientation of the INS, and its covariance.
+    # The IMU message with the orientation of the INS, and its covariance.
     for name in ('angular_velocity', 'linear_acceleration', 'linear_acceleration_covariance'):
         assert np.array_equal(data[name], raw[name])
     assert np.array_equal(data['orientation'], odometry['orientation'])

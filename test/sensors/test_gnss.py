@@ -38,7 +38,7 @@ def truth_of(kind, t_ns, **more):
 
 
 def samples(truth):
-    """Return [(t_ns, truth)] with the arguments of ``push``."""
+    """Return [(t_ns, truth)], the arguments of ``push``."""
     return [(t_ns, (lat, lon, height, v_n, q_nb, rate_on_earth(lat, q_nb, omega, 7.292115e-5)))
             for t_ns, lat, lon, height, v_n, q_nb, omega in zip(*(
                 getattr(truth, name).tolist() for name in ('t_ns', 'lat', 'lon', 'height', 'v_n',
@@ -165,7 +165,7 @@ def test_a_jump_moves_the_position_alone():
     for t in range(12):
         fix, other = receiver.fix(t * SECOND, REST), plain.fix(t * SECOND, REST)
         moved = position_error(fix.lat, fix.lon, fix.height, other.lat, other.lon, other.height)
-        # The offset is applied with the radii at the truth; the noise (10 m) is elsewhere.
+        # The offset is applied with the radii of curvature at the truth; the noise is 10 m off.
         expected = offset if 5 <= t < 8 else (0.0, 0.0, 0.0)
         assert np.abs(np.subtract(moved, expected)).max() < 100.0 * 30.0 / 6.3e6
         assert fix.v_n == other.v_n and fix.position_sigma == other.position_sigma
@@ -193,7 +193,7 @@ WHOLE = gnss(FULL).advance(FLIGHT)
 @settings(max_examples=20, deadline=None)
 @given(cuts=st.lists(st.integers(0, 2001), max_size=5), order=st.randoms())
 def test_any_cutting_in_any_order_gives_the_same_bits(cuts, order):
-    """A fix depends on seed and index only: whole, in pieces, in any order, with the same bits."""
+    """A fix depends on seed and index only: in any parts and order it has the same bits."""
     edges = [0, *sorted(cuts), 2001]
     pieces = list(zip(edges, edges[1:]))
     order.shuffle(pieces)
@@ -216,7 +216,7 @@ def test_the_stream_gives_the_bits_of_the_block():
 
 
 def test_over_the_date_line():
-    """A longitude across the date line stays within half a turn."""
+    """The longitude of a fix near the date line is less than half a turn from the truth."""
     receiver = gnss({'jump.end_s': 10.0, 'jump.offset_m': (1000.0, 0.0, 0.0)})
     fix = receiver.fix(SECOND, (0.5, math.radians(179.999), *REST[2:]))
     assert -math.pi < fix.lon < math.radians(-179.98)
@@ -242,7 +242,7 @@ NAN = (math.nan, *REST[1:])
     ((0, REST), 'truth jumps back from 0.010000000 s to 0.000000000 s', True),
 ])
 def test_bad_samples_are_refused(sample, sentence, restart):
-    """A bad sample raises a fault of one sentence; after a reset the next one is the first."""
+    """A bad sample raises a fault with one message; after a reset the next one is the first."""
     receiver = gnss()
     receiver.push(0, REST)
     receiver.push(DT, REST)
@@ -255,7 +255,7 @@ def test_bad_samples_are_refused(sample, sentence, restart):
 
 
 def test_truth_that_steps_over_the_instant_of_a_fix_is_refused():
-    """Truth at 130 Hz has no sample at the instants of 10 Hz fixes and is refused."""
+    """Truth at 130 Hz, which has no sample at the instants of 10 Hz fixes, is refused."""
     receiver, step = gnss({'gnss.rate_hz': 10.0}), 7_692_308
     with pytest.raises(StreamFault, match='over 0.100000000 s; expected a sample there'):
         for k in range(20):
@@ -287,6 +287,6 @@ def test_truth_that_steps_over_the_instant_of_a_fix_is_refused():
     ({'outages.start_s': (math.inf,), 'outages.end_s': (1.0,)}, 'expected a finite number'),
 ])
 def test_bad_settings_are_one_sentence(values, sentence):
-    """Each error about settings names the key, the value and the expectation."""
+    """Each invalid setting gives a message with key, value and expectation."""
     with pytest.raises(ValueError, match=sentence):
         gnss(values)

@@ -1,4 +1,4 @@
-"""Bad instrument settings are refused in one sentence; presets, covariances and sampling."""
+"""Invalid sensor settings are refused with one message; presets, covariances and sampling."""
 
 from dataclasses import FrozenInstanceError
 import math
@@ -45,7 +45,7 @@ def three(value):
     (AccelerometerErrors, 'velocity_random_walk_m_s_sqrt_h', three(-1.0), 'expected 0 to'),
     (AccelerometerErrors, 'gauss_markov_time_s', three(0.0), 'expected 0.001 to')])
 def test_a_bad_value_is_refused(cls, key, value, says):
-    """A bad value is refused with a sentence that names key, value and expectation."""
+    """A bad value is refused with a message that has key, value and expectation."""
     with pytest.raises(ValueError) as raised:
         TriadErrors(cls(**{key: value}), 1, 0, 'gyro', DT)
     message = str(raised.value)
@@ -68,7 +68,7 @@ def test_saturation_below_noise_is_refused(terms, says):
 
 
 def test_infinite_correlation_time():
-    """Only a correlation time may be infinite, which makes a random walk; files accept it too."""
+    """Only a correlation time may be infinite, which gives a random walk; in files too."""
     key = 'gauss_markov_time_s'
     model = triad_model(GyroErrors(gauss_markov_time_s=three(math.inf)), DT)
     assert model.gauss_markov_time == three(math.inf)
@@ -79,7 +79,7 @@ def test_infinite_correlation_time():
 
 @pytest.mark.parametrize('cls', [GyroErrors, AccelerometerErrors, Temperature, Sampling])
 def test_every_key_has_unit_bounds_and_doc(cls):
-    """The defaults pass their own check, and each key reaches a coefficient."""
+    """The defaults pass their own check, and each key changes a coefficient."""
     known = flatten(cls)
     assert build(cls, {name: f.default for name, f in known.items()}) == cls()
     for f in known.values():
@@ -106,7 +106,7 @@ def test_reported_variance():
 
 @pytest.mark.parametrize('name', PRESETS)
 def test_presets_are_complete_and_cannot_be_changed(name):
-    """Each preset builds and names its class and figures; changing a copy does not change it."""
+    """Each preset builds and names its class and values; changing a copy does not change it."""
     one = PRESETS[name]
     assert one.name == name and one.datasheet and 'ARW' in one.figures and 'VRW' in one.figures
     values = preset(name)
@@ -123,14 +123,14 @@ def test_presets_are_complete_and_cannot_be_changed(name):
 
 
 def test_an_unknown_preset_names_the_nearest():
-    """An unknown preset is refused with a sentence that names the nearest one."""
+    """An unknown preset is refused with a message that names the nearest one."""
     with pytest.raises(ValueError, match="unknown instrument preset 'tactical_mens'; the nearest "
                        "known one is 'tactical_mems'"):
         preset('tactical_mens')
 
 
 def test_sampling():
-    """Latency is constant, jitter has its sigma and keeps the order, losses their share."""
+    """Latency is constant, jitter has its sigma and keeps the order, and losses their share."""
     dt, n = 10_000_000, 20000
     assert Sampler(Sampling(), 1, 0, 'sampling', dt).stamp(5, 7) == 7
     late = Sampler(Sampling(latency_us=1500.0), 1, 0, 'sampling', dt)

@@ -27,7 +27,7 @@ def test_names_are_counted():
 
 
 def test_a_value_beside_its_bound_is_told_from_it():
-    """2**31 is shown exactly, not as '2.14748e+09; expected 0 to 2.14748e+09'."""
+    """2**31 is printed exactly, and not like its bound 2147483647 as '2.14748e+09'."""
     assert exact(2 ** 31) == '2147483648' and exact(0.1) == '0.1' and exact(1e6) == '1e+06'
     assert exact(50000.0) == '50000' and exact(1e300) == '1e+300'
     with pytest.raises(ValueError, match='is 2147483648; expected 0 to 2147483647'):

@@ -1,4 +1,4 @@
-"""Epoch and frames: what the settings mean, and what they refuse."""
+"""Epoch and frames: what the settings mean and what they refuse."""
 
 import time
 
@@ -46,7 +46,7 @@ def test_names_of_frames():
     assert names['map'] == 'uav1/map' and names['base_link'] == 'uav1/body'
     assert names['enu'] == 'uav1/enu' and names['leg'] == 'uav1/leg'
     assert set(map(str, Frames().names().values())) == {*ROLES, 'enu', 'leg'}
-    # names may have parts of their own
+    # Names may have several parts.
     assert build(Frames, {'imu_link': 'nose/imu'}).names()['imu_link'] == 'nose/imu'
 
 
@@ -66,6 +66,7 @@ def test_names_of_frames():
      'parts, such as uav1'),
     ({'imu_link': 'a//b'}, "frames.imu_link is 'a//b'; expected a name without spaces")])
 def test_frames_that_tf_does_not_take(values, sentence):
+    """Frame names with slashes, spaces or repetitions are refused with key and value."""
     with pytest.raises(ValueError, match=sentence):
         build(Frames, values)
 
@@ -80,6 +81,7 @@ def test_frames_that_tf_does_not_take(values, sentence):
     ('tf.source:=inss', r"tf.source is 'inss'; expected one of none, truth, ins, aided "
      r'\(nearest: ins\)')])
 def test_nodes_of_one_vehicle_agree(word, sentence):
+    """Frames and tf.source must be equal in all nodes of a vehicle."""
     with pytest.raises(ValueError, match=sentence):
         parameter_files.read_aided([], [word])
     both = parameter_files.read_aided([], ['frames.prefix:=uav1', 'tf.source:=aided'])

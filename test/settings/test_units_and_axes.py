@@ -1,4 +1,4 @@
-"""One number stands for three equal axes; white noise as a random walk or as a density."""
+"""One number for three equal axes, and white noise as a random walk or a density."""
 
 import math
 
@@ -18,7 +18,7 @@ from ins_sim.settings.instrument_errors import AccelerometerErrors, GyroErrors
 
 DT = 0.01
 WALK, DENSITY = 'angle_random_walk_deg_sqrt_h', 'noise_density_rad_s_sqrt_hz'
-# Of the noise of an instrument in both units, as its users convert it.
+# White noise of an IMU in both units, converted as users do it.
 PAIRS = [(GyroErrors, WALK, DENSITY, math.radians(1.0) / 60.0),
          (AccelerometerErrors, 'velocity_random_walk_m_s_sqrt_h', 'noise_density_m_s2_sqrt_hz',
           1.0 / 60.0)]
@@ -29,7 +29,11 @@ FILE = """/**:
 
 
 def test_a_number_in_a_file_in_an_assignment_and_in_python_is_three(tmp_path):
-    """One number, also an integer, stands for three axes; strapdown and IMU have equal triads."""
+    """
+    One number, also an integer, stands for three axes in files, assignments and Python.
+
+    Strapdown and IMU then have equal triads.
+    """
     path = tmp_path / 'scalars.yaml'
     path.write_text(FILE)
     for read in (parameter_files.read([path], ['accelerometer.errors.scale_factor_ppm:=-2.5']),
@@ -48,7 +52,7 @@ def test_a_number_in_a_file_in_an_assignment_and_in_python_is_three(tmp_path):
 
 
 def test_places_and_rotations_take_no_single_number():
-    """Positions and rotations need a list; texts are refused in both cases."""
+    """Positions and rotations need a list, and texts are refused for them and for axes."""
     names = {name for cls in ALL_NODES.values() for name, f in flatten(cls).items()
              if f.metadata['size'] == 3 and not f.metadata['equal_axes']}
     assert {'lever_arm_m', 'jump.offset_m'} <= names and not any('errors' in n for n in names)
@@ -64,7 +68,11 @@ def test_places_and_rotations_take_no_single_number():
 
 @pytest.mark.parametrize('cls, walk, density, one', PAIRS)
 def test_a_density_is_the_random_walk_in_other_units(cls, walk, density, one):
-    """1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz); everything made of N is the same, to rounding."""
+    """
+    1 deg/sqrt(h) is pi/180/60 rad/s/sqrt(Hz): all quantities derived from N are the same.
+
+    They agree to rounding.
+    """
     given, same = cls(**{walk: 0.3}), cls(**{density: 0.3 * one})
     a, b = triad_model(given, DT), triad_model(same, DT)
     assert b.white == pytest.approx(a.white, rel=4e-16) and b.white == (0.3 * one,) * 3
@@ -74,14 +82,14 @@ def test_a_density_is_the_random_walk_in_other_units(cls, walk, density, one):
     noise = [TriadErrors(errors, 5, 0, 'gyro.errors', DT).advance(0, zeros, zeros, zeros[:, 0])
              for errors in (given, same)]
     assert noise[1] == pytest.approx(noise[0], rel=1e-14) and noise[0].std() > 0.0
-    # of a perfect mean there is nothing left
+    # Of a perfect mean nothing remains.
     assert fixed_errors(same) is None
     assert TRIADS['gyro'][1].unit == 'deg/sqrt(h)'
 
 
 @pytest.mark.parametrize('cls, walk, density, one', PAIRS)
 def test_both_are_refused(cls, walk, density, one):
-    """Random walk and density together are refused in one sentence; a zero does not count."""
+    """Random walk and density together are refused with one message; a zero does not count."""
     with pytest.raises(ValueError) as raised:
         cls(**{walk: (0.0, 0.1, 0.0), density: 1e-4})
     assert str(raised.value) == (
@@ -93,6 +101,6 @@ def test_both_are_refused(cls, walk, density, one):
 
 
 def test_a_range_below_the_noise_names_what_was_given():
-    """The message about a range below the noise names the key that was given."""
+    """The message about a range below the noise names the key that was set."""
     with pytest.raises(ValueError, match=r'white noise \(noise_density_rad_s_sqrt_hz\)'):
         triad_model(GyroErrors(saturation_deg_s=4.0, noise_density_rad_s_sqrt_hz=0.1), DT)

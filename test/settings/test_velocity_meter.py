@@ -1,4 +1,4 @@
-"""Bad settings of the velocity meter are refused in one sentence at construction."""
+"""Bad settings of the velocity meter are refused with one message at construction."""
 
 import math
 
@@ -50,7 +50,7 @@ def test_settings_made_by_hand_check_themselves():
 
 
 def test_lags_too_long_for_the_fastest_delay():
-    """A PRF so low that every delay lies before lag 1 is refused."""
+    """A PRF so low that every delay is less than one lag is refused."""
     with pytest.raises(ValueError) as raised:
         VelocityMeter(meter_settings(mode='signal', signal__prf_hz=5000.0, signal__lags=8,
                                      limits__speed_min_m_s=100.0))
@@ -75,7 +75,7 @@ def test_the_surrogate_has_no_signals():
 
 
 def test_every_key_has_bounds_and_a_doc():
-    """The defaults pass their own check."""
+    """The defaults of the velocity meter pass their own check, and every key has bounds."""
     known = flatten(VelocityMeterSettings)
     assert build(VelocityMeterSettings, {name: f.default for name, f in known.items()}) == \
         VelocityMeterSettings()

@@ -1,4 +1,4 @@
-"""Runs of the aided chain side by side equal single runs; their NEES is that of the filter."""
+"""Aided runs computed side by side equal single runs; their NEES is that of the filter."""
 
 from ins_sim.core.aiding.consistency import BLOCKS, FilterNote, nees, TrueValues
 from ins_sim.core.aiding.filters.eskf import ErrorStateFilter
@@ -49,9 +49,7 @@ def test_a_run_is_the_single_run_to_the_bit(assignments):
 
 
 def test_the_instants_are_those_wanted():
-    """
-    Each instant is the first sample at or after the requested one; lost samples are left out.
-    """
+    """Each instant is the first sample at or after the requested one, unless it is lost."""
     wanted_ns = np.array([0, 3, 13, 15]) * SECOND + 1_000_000
     wanted_ns[0] = 0
     settings, found = flights(wanted_ns=wanted_ns)
@@ -64,7 +62,7 @@ def test_the_instants_are_those_wanted():
 
 
 def test_nees_is_that_of_the_covariance():
-    """Every block agrees with NumPy; states held or given exactly are not counted."""
+    """NEES of every block agrees with NumPy; held and exactly given states do not count."""
     settings, (flight, _) = flights()
     squares, freedoms = flight.nees()
     # East and north of position and velocity, attitude, two biases of three, and the mounting.
@@ -105,7 +103,7 @@ def test_the_bias_of_the_truth_is_what_the_readings_show():
 
 
 def test_without_a_covariance_there_is_no_nees():
-    """A filter with fixed gains has no note and no degree of freedom, hence no NEES."""
+    """A filter with fixed gains has no degree of freedom, hence no NEES and no note."""
     note = FilterNote((), (), None, ((0.0,) * 3,) * 2, (0.0,) * 3)
     squares, freedoms = nees(note, ((1.0,) * 3,) * 3, TrueValues(None, None, (0.0,) * 3))
     assert np.isnan(squares).all() and freedoms == [0] * len(BLOCKS)
@@ -140,9 +138,7 @@ def test_a_solution_that_diverges_is_said(monkeypatch):
 
 
 def test_sums_are_chi_square():
-    """
-    A sum over runs has the sum of their degrees of freedom, and groups merge to the same sum.
-    """
+    """A sum over runs has the sum of their degrees of freedom; groups merge to the same sum."""
     rng = np.random.default_rng(5)
     freedoms = np.tile(np.array([2, 3, 0]), (4, 50, 1))
     squares = rng.chisquare(np.maximum(freedoms, 1))

@@ -54,8 +54,9 @@ def errors_of(result):
     ((*LATE_MOTION_2, *NOISY), LAGGED)])
 def test_a_lane_is_the_single_run(names, assignments):
     """
-    Solution and errors of a lane are those of simulate with the same run, for every vertical
-    channel.
+    A run computed beside others has the solution and errors of the single run.
+
+    This holds for every vertical channel.
     """
     settings = settings_of(*assignments, names=names)
     motion, initial = read_motion(settings.motion_generator), drawn_initial(settings)

@@ -1,4 +1,4 @@
-"""The loop over lanes is compiled to vector instructions."""
+"""The loop over runs computed side by side is compiled to vector instructions."""
 
 import re
 
@@ -16,7 +16,7 @@ SINGLE = r'\bv?(?:mul|add|sub)sd\b|\bf(?:mul|add|sub)\s+d\d+,'
 
 @pytest.mark.parametrize('gravity', GRAVITY_TERMS.values(), ids=GRAVITY_TERMS)
 def test_small_steps_are_packed(gravity):
-    """Nearly all products and sums of a small step process several runs with one instruction."""
+    """Nearly all products and sums of a small step process several runs in one instruction."""
     jit = compilation.numba()
     steps = compilation.compiled(lanes.small_steps)
     alone = jit.njit(steps.py_func, error_model='numpy', nogil=True)

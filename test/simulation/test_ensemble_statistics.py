@@ -1,4 +1,4 @@
-"""Running moments and percentiles equal those of all samples at once."""
+"""Running moments and percentiles equal those of all samples together."""
 
 from ins_sim.core.ensemble.statistics import ErrorStatistics
 import numpy as np
@@ -16,7 +16,9 @@ def streamed(samples, cuts):
 @pytest.mark.parametrize('cuts', [[], [1], [16, 32, 33, 90], [0, 99]])
 def test_moments_and_percentiles(cuts):
     """
-    Means and covariances agree to rounding, percentiles to the width of a bin, for any groups.
+    Means and covariances agree to rounding, percentiles to the width of a bin.
+
+    This holds for any groups of samples.
     """
     rng = np.random.default_rng(7)
     samples = 1e3 + rng.normal(size=(2, 100, 3)) * [1.0, 50.0, 2000.0]
@@ -43,7 +45,7 @@ def test_what_is_not_finite_is_left_out():
 
 
 def test_too_few_runs():
-    """Without runs there are no percentiles, and a single run has no covariance."""
+    """Without runs there are no percentiles, and with a single run no covariance."""
     found = ErrorStatistics(1, 2)
     assert np.isnan(found.percentile(50.0)).all()
     found.add(0, np.ones((1, 1, 2)))

@@ -49,7 +49,9 @@ def test_the_stream_gives_the_bits_of_the_batch(values):
 
 def test_what_is_predicted_is_what_runs_show():
     """
-    60 runs of one minute of the racetrack: predicted over observed 0.75 to 1.25 on every axis.
+    On a minute of racetrack predicted sigmas are 0.75 to 1.25 of those of 60 runs.
+
+    This holds for every axis.
     """
     found = ratios(settings_of('racetrack', MEMS, 60.0, **SIGMAS), [60.0])
     level = np.delete(found, UP, axis=1)
@@ -61,7 +63,11 @@ def test_what_is_predicted_is_what_runs_show():
 @pytest.mark.parametrize('instrument', [FOG, MEMS])
 @pytest.mark.parametrize('motion', ['rest', 'racetrack'])
 def test_the_table_of_predictions(motion, instrument, channel):
-    """60 runs; 60, 300 and 600 s: 0.75 to 1.25 on every axis, including up if it is free."""
+    """
+    At 60, 300 and 600 s predicted sigmas are 0.75 to 1.25 of those of 60 runs.
+
+    This holds for every axis, including up if the channel is free.
+    """
     found = ratios(settings_of(motion, instrument, 600.0, **SIGMAS, **{
         'vertical.channel': channel}), [60.0, 300.0, 600.0])
     print(motion, instrument, channel, found.round(2).tolist())
@@ -72,7 +78,11 @@ def test_the_table_of_predictions(motion, instrument, channel):
 
 @pytest.mark.slow
 def test_the_prediction_of_motion_2():
-    """16 km in 600 s, almost all due to scale factors: predicted within 0.6 to 1.6."""
+    """
+    On motion 2 the predicted error of 16 km in 600 s is within 0.6 to 1.6 of the runs.
+
+    Almost all of it is due to scale factors.
+    """
     found = ratios(settings_of('motion_2', FOG, 600.0), [60.0, 300.0, 600.0])
     print('motion_2', found.round(2).tolist())
     level = np.delete(found, UP, axis=1)
@@ -80,14 +90,18 @@ def test_the_prediction_of_motion_2():
 
 
 def is_positive(p):
-    """Return whether a symmetric matrix is positive semidefinite, scaled to correlations."""
+    """Return whether a symmetric matrix, scaled to correlations, is positive semidefinite."""
     size = np.sqrt(np.diag(p))
     return np.array_equal(p, p.T) and np.linalg.eigvalsh(p / np.outer(size, size))[0] > -1e-12
 
 
 @pytest.mark.parametrize('motion, instrument', [('motion_2', MEMS), ('racetrack', FOG)])
 def test_every_covariance_is_positive(motion, instrument):
-    """All 27 states, after each step; the up rows are held if the height is that of the truth."""
+    """
+    The covariance of all 27 states is positive after each step.
+
+    The up rows are held if the height is that of the truth.
+    """
     steps = steps_of(settings_of(motion, instrument, 60.0))
     assert len(steps) > 100
     for _, p, mean, _ in steps:
@@ -98,7 +112,7 @@ def test_every_covariance_is_positive(motion, instrument):
 
 
 def test_a_perfect_ins_is_not_believed_to_be_exact():
-    """No covariance is zero, and none grows much for perfect instruments."""
+    """With perfect instruments no variance is zero, and none grows much."""
     steps = steps_of(settings_of('rest', 'default', 20.0))
     assert (np.diag(steps[0][1]) > 0.0).all()
     assert 1e-3 <= np.sqrt(steps[-1][1][0, 0]) < 2e-3
@@ -106,20 +120,24 @@ def test_a_perfect_ins_is_not_believed_to_be_exact():
 
 def test_readings_slower_than_the_steps_are_cut():
     """
-    A reading every four seconds is divided into eight steps: equal to fine steps up to its middle.
+    A reading every four seconds is divided into eight steps, which equal fine steps.
+
+    The comparison is up to the middle of the interval.
     """
     slow, fast = (settings_of('rest', MEMS, 60.0, **{
         'rate_hz': rate, 'imu_sensor:rate_hz': rate, 'motion_generator:rate_hz': rate})
         for rate in (0.25, 100.0))
     one, other = (steps_of(s)[-1] for s in (slow, fast))
     assert one[0] == other[0] == 60_000_000_000
-    # The white part of flicker noise is the same; pulses and the middle of the steps differ.
+    # The white part of flicker noise is the same; pulses and the middle of steps differ.
     assert np.sqrt(np.diag(one[1])[:9]) == pytest.approx(np.sqrt(np.diag(other[1])[:9]), rel=1e-3)
 
 
 def test_what_is_published_belongs_to_the_step_before():
     """
-    Published pose, velocity, rate and position at the start are the initial sigmas in axes of map.
+    Published pose, velocity, rate and position at the start have the initial sigmas.
+
+    They are in the axes of map.
     """
     settings = settings_of('racetrack', FOG, 1.0, **SIGMAS)
     motion = read_motion(settings.motion_generator)
@@ -137,7 +155,7 @@ def test_what_is_published_belongs_to_the_step_before():
     assert np.sqrt(np.diag(pose)[3:]) == pytest.approx([3e-4, 3e-4, 1.5e-3], rel=1e-3)
     speed = float(np.hypot(*truth.v_n[0, :2]))
     velocity = np.reshape(known.velocity, (3, 3))
-    # Across the track the azimuth error rotates the velocity too.
+    # Across the track the azimuth error also rotates the velocity.
     assert np.trace(velocity) == pytest.approx(
         2 * 0.05 ** 2 + (speed * 1.5e-3) ** 2 + (speed * 3e-4) ** 2, rel=1e-3)
     assert all(is_positive(np.reshape(m, (n, n))) for m, n in (

@@ -1,4 +1,4 @@
-"""The closed loop offline gives the bits of the open one on the truth as flown; and refusals."""
+"""The closed loop offline has the bits of an open run on the truth as flown; refusals."""
 
 from dataclasses import replace
 import math
@@ -27,7 +27,7 @@ def settings(aided=True, **more):
 
 
 def flown(chosen, aided=None):
-    """Return the motion of SimulationSettings, steered, and the GuidedResult."""
+    """Return the steered motion of SimulationSettings and the GuidedResult."""
     generator = chosen.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     return motion, fly(chosen, motion, aided)
@@ -41,7 +41,7 @@ def flown(chosen, aided=None):
     {'sampling__drop_out_probability': 0.01, 'filter': 'window_kf'}],
     ids=('eskf', 'paper_corrected', 'noise and gnss', 'from the motion, ahead', 'drop-outs'))
 def test_the_loop_steers_by_the_solution_of_the_open_run(more):
-    """The estimates equal, bit for bit, those of ``simulate_aided`` on the motion as flown."""
+    """The estimates equal, to the bit, those of ``simulate_aided`` on the motion as flown."""
     run = ins_sim.simulate_aided(settings(**more), twin=False)
     seen, motion = run.run.steered.estimates, run.run.motion
     states, generator = run.states, run.run.settings.motion_generator
@@ -62,7 +62,7 @@ def test_the_loop_steers_by_the_solution_of_the_open_run(more):
 
 
 def test_the_strapdown_steers_without_aiding():
-    """Without aiding the strapdown solution steers; it drifts by less than a millimetre here."""
+    """Without aiding the strapdown solution steers; it drifts by less than 1 mm here."""
     run = ins_sim.simulate(settings(False))
     seen, states = run.steered.estimates, run.steered.states
     assert seen.steers.all()
@@ -95,7 +95,7 @@ def test_a_navigator_that_skips_steps_steers_by_those_it_publishes(aids):
 
 
 def test_a_motion_of_ones_own_fits_the_samples():
-    """The control instants of a user-defined motion are samples of the truth."""
+    """The control instants of a user's motion are samples of the truth."""
     motion, _ = flown(settings(False, duration_s=1.0))
     chosen = settings(False, duration_s=1.0, rate_hz=75.0, motion__guided__control_rate_hz=75.0)
     with pytest.raises(ValueError, match='the control period of the motion is 10000000 ns; '
@@ -104,7 +104,7 @@ def test_a_motion_of_ones_own_fits_the_samples():
 
 
 def test_rates_of_truth_and_control_may_differ():
-    """200 Hz with commands at 50 Hz, 10 ms later, gives the same flight within 0.5 %."""
+    """200 Hz with commands at 50 Hz that are 10 ms later give the flight within 0.5 %."""
     fast = flown(settings(False, rate_hz=200.0, motion__guided__control_rate_hz=50.0))[1]
     usual = flown(settings(False))[1]
     assert len(fast.states) == 301
@@ -113,7 +113,7 @@ def test_rates_of_truth_and_control_may_differ():
 
 
 def test_turns_are_flown_straight_and_left_behind():
-    """The autopilot is off in a turn; on the next leg it reduces the offset to zero."""
+    """In a turn the autopilot is off; on the next leg it reduces the offset to zero."""
     chosen = settings(False, duration_s=42.0, start_s=270.0, motion__route__turn_rate_deg_s=3.0,
                       motion__route__points__latitude_deg=[55.0, 55.5, 55.6],
                       motion__route__points__longitude_deg=[37.0, 37.3, 38.2],
@@ -132,7 +132,7 @@ def test_turns_are_flown_straight_and_left_behind():
 
 def test_delays_are_predicted_on_the_truth_as_flown():
     """
-    Twin and prediction for delays of 3, 6, 9 us on a motion with jumps of the command.
+    Twin and prediction hold for delays of 3, 6, 9 us on a motion with command jumps.
 
     The strapdown rotates the velocity increment of an interval by the attitude at its start, while
     the theory is continuous. The position error is therefore half an interval of exp(-t/0.4)
@@ -163,7 +163,9 @@ def test_delays_are_predicted_on_the_truth_as_flown():
 @pytest.mark.slow
 def test_closure_of_an_hour(figures):
     """
-    Ideal readings of the motion at 100 Hz: 1e-2 m in an hour; through the stream: recorded only.
+    Ideal readings of the motion at 100 Hz close to 1 cm in an hour.
+
+    The closure through the stream is recorded but not checked.
     """
     for source in ('motion', 'stream'):
         chosen = settings(False, duration_s=3600.0, source=source,
@@ -206,7 +208,7 @@ def test_commands_refuse_in_one_sentence(command, sentence, tmp_path, capsys):
 
 
 def test_the_command_writes_the_histories(tmp_path, capsys):
-    """The command writes histories with the truth as flown, and the notes on the loop."""
+    """The command writes histories with the truth as flown, and notes on the loop."""
     assert main(['simulate', '--aided', '--params-file', FILE, '-p', 'duration_s:=3.0', '-p',
                  'window.cycles:=100', '-p', 'guidance.latency_s:=2.0', '-o',
                  str(tmp_path / 'run'), '--bag', str(tmp_path / 'bag')]) == 0

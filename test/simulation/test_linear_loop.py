@@ -22,7 +22,7 @@ SLIDING = {0.1: (('.819', '.336'), ('.899', '.248'), ('1.31', '.095')),
            0.5: (('.203', '.526'), ('.232', '.326'), ('.534', '.118')),
            1.0: (('.141', '.614'), ('.158', '.345'), ('.440', '.122')),
            5.0: (('.102', '.758'), ('.101', '.364'), ('.366', '.126'))}
-# K: positive limit, rad/s, negative limit
+# K: positive limit, rad/s, negative limit.
 PAPER = {0.1: (('.134', '.720', '-4.39'), ('.734', '.364', '-1.95'), ('inf', None, '-3.17')),
          0.344: (('.104', '.965', '-1.59'), ('.200', '.549', '-.536'), ('1.63', '.092', '-.804')),
          1.0: (('.101', '1.11', '-.717'), ('.086', '.812', '-.160'), ('.382', '.138', '-.167'))}
@@ -31,7 +31,7 @@ LENGTHS = (10, 100, 1000)
 
 def meets(value, printed):
     """
-    Return whether a number agrees with the printed one, within 0.6 of its last digit.
+    Return whether a number agrees with the printed one within 0.6 of its last digit.
 
     0.5 is rounding; the mean over a window, by trapezoids or exactly, changes it by 4e-4.
     """
@@ -73,7 +73,7 @@ def test_published_limits_of_paper_corrected(gain):
                                                     (20, '.151', 2)])
 def test_published_limits_with_latency(latency, k_z, unstable):
     """
-    Limits for N = 100, K_v = 1 and latencies 0, 0.05 and 0.2 s.
+    For N = 100, K_v = 1 the limits agree for latencies of 0, 0.05 and 0.2 s.
 
     At 0.2 s the limit of the slow mode is as published, but a fast mode grows for any k_z: the
     solution used for steering is corrected with a mean of the past.
@@ -85,8 +85,9 @@ def test_published_limits_with_latency(latency, k_z, unstable):
 
 def test_a_long_latency_moves_limits_as_a_delay_does():
     """
-    One second of latency, 100 states: with one window a correction, limits are roots of the
-    growth.
+    With one window per correction and a latency of 1 s, limits are roots of the growth.
+
+    The system has 100 states.
     """
     slow = loop(100, ramps=False)
     found = limits(slow, block(1000, 0.05))
@@ -97,9 +98,7 @@ def test_a_long_latency_moves_limits_as_a_delay_does():
 
 
 def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
-    """
-    Windows every 10 cycles: limit 0.153 (0.158); every 50 cycles the loop is always unstable.
-    """
+    """With windows every 10 cycles the limit is 0.153 (0.158); every 50, no loop is stable."""
     assert meets(limits(loop(ramps=False), sliding(100, 1.0, 10)).positive.k_z, '.153')
     assert limits(loop(ramps=False), sliding(100, 1.0, 50)).unstable == 1
 
@@ -107,7 +106,7 @@ def test_windows_every_ten_cycles_suffice_and_every_fifty_do_not():
 @pytest.mark.parametrize('cycles, gain', [(10, '1.02'), (50, '.417'), (100, '.354'),
                                           (200, '.369'), (500, '.339'), (1000, '.932')])
 def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gain, figures):
-    """At k_z = 0 the critical gain is as published, by bisection; the loop is quiet below."""
+    """At k_z = 0 the critical gain is as published, by bisection; below it the loop is quiet."""
     low, high = 0.0, 2.0
     assert growth(loop(ramps=False), block(cycles, 0.05), 0.0).growth < 0.0
     while high - low > 1e-5:
@@ -121,7 +120,7 @@ def test_the_block_filter_is_unstable_above_a_gain_without_any_error(cycles, gai
 
 
 def test_growth_just_inside_the_limit():
-    """k_z = 0.15 decays at 0.0048 1/s with 0.345 rad/s, as published."""
+    """At k_z = 0.15 the mode decays at 0.0048 1/s with 0.345 rad/s, as published."""
     mode = growth(loop(ramps=False), sliding(100, 1.0), 0.15)
     assert meets(mode.growth, '-.0048') and meets(mode.frequency, '.345')
 
@@ -132,9 +131,7 @@ def test_growth_just_inside_the_limit():
        latency=st.integers(0, 12), ramps=st.booleans())
 def test_limits_are_where_eigenvalues_leave_the_unit_circle(cycles, step, k_v, kind, latency,
                                                             ramps):
-    """
-    Just inside a limit all modes decay, outside one grows; the count of modes at zero agrees.
-    """
+    """Inside a limit all modes decay, outside one grows; the number of modes at zero agrees."""
     aiding = sliding(cycles, k_v, step) if kind == 'sliding' else paper(cycles, min(1.9, k_v))
     lateral = loop(latency, ramps)
     found = limits(lateral, aiding)
@@ -152,7 +149,9 @@ def test_limits_are_where_eigenvalues_leave_the_unit_circle(cycles, step, k_v, k
 @pytest.mark.parametrize('ramps', [True, False])
 def test_a_period_of_the_plant(ramps):
     """
-    Sideslip, rate and offset after a control period agree with integration, for both commands.
+    Sideslip, rate and offset after a control period agree with integration.
+
+    This holds for both kinds of command.
     """
     lateral = loop(ramps=ramps)._replace(period_s=0.3)
     z, v, beta, old, new = 3.0, -2.0, 0.05, 0.1, -0.07
@@ -167,9 +166,7 @@ def test_a_period_of_the_plant(ramps):
 
 @pytest.mark.parametrize('k_v', [0.3, 1.0, 10.0])
 def test_the_phase_margin_is_used_up_where_the_loop_becomes_unstable(k_v):
-    """
-    The latency at which modes start to grow is predicted by the phase margin within one period.
-    """
+    """The latency at which modes begin to grow is the phase margin, within one period."""
     aiding = sliding(100, k_v)
     margin = aided_margin(loop(), aiding)
     most = math.floor(margin.delay_s / PERIOD_S)
@@ -181,7 +178,7 @@ def test_the_phase_margin_is_used_up_where_the_loop_becomes_unstable(k_v):
 
 
 def test_the_phase_margin_with_a_slow_navigator_is_that_of_the_autopilot():
-    """At K_v = 0.001 1/s it equals ``margin.phase_margin``, with the command a period late."""
+    """At K_v = 0.001 1/s the margin is ``margin.phase_margin`` with a command a period late."""
     lateral, slow = loop(), aided_margin(loop(), sliding(100, 0.001))
     alone = phase_margin((lateral.k1, lateral.k2), lateral.side_force, lateral.lag_s, PERIOD_S)
     # The crossover is between two of 20001 frequencies, and K_v lowers it slightly.
@@ -191,7 +188,7 @@ def test_the_phase_margin_with_a_slow_navigator_is_that_of_the_autopilot():
 @pytest.mark.parametrize('latency_s, gain, said', [(0.15, 1.0, False), (0.2, 1.0, True),
                                                    (0.2, 0.2, False)])
 def test_a_latency_that_the_corrections_do_not_bear_is_said(latency_s, gain, said):
-    """A warning is given for a latency that exact navigation would tolerate by one second more."""
+    """A warning is given for a latency that exact navigation would tolerate with 1 s to spare."""
     settings = parameter_files.read_aided([resources.config('guided_flight')], [
         'filter:=conventional', 'window.cycles:=100', 'window.slide_cycles:=1',
         f'gain_per_s:={gain}', f'guidance.latency_s:={latency_s}'])

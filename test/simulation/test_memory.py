@@ -1,4 +1,4 @@
-"""Memory grows with the block size, not with the run; any block length gives the same bits."""
+"""Memory grows with the block length, not with the run; any length gives the same bits."""
 
 import tracemalloc
 
@@ -45,12 +45,16 @@ def test_blocks_of_a_prediction_join_to_the_bit(values, monkeypatch):
 
 
 def test_a_prediction_without_histories_has_the_same_figures():
-    """Without histories the numbers are the same (two hours would take 600 MB, 85 kB a second)."""
+    """
+    A prediction without histories gives the same numbers.
+
+    Two hours with histories need 600 MB, 85 kB a second.
+    """
     chosen = settings(MOTION_2, duration_s=7200.0)
     motion = read_motion(chosen.motion_generator)
     found = []
     peak = peak_of(lambda: found.append(prediction.predict(chosen, motion, collect=None)))
-    assert peak < 100e6  # Numba takes some 25 MB of this, if it is installed.
+    assert peak < 100e6  # Numba needs some 25 MB of this, if it is installed.
     whole = prediction.predict(chosen, motion)
     assert found[0].t_s is found[0].attitude is found[0].position is None
     np.testing.assert_array_equal(found[0].drift, whole.drift)

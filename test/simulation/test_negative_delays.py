@@ -16,7 +16,7 @@ EARLY = {'motion.kind': 'two_axis', 'source': 'stream', 'duration_s': 5.0}
                                     (0.0, -1e6, 1e6), (-1e6, -1e6, -1e6)])
 @pytest.mark.parametrize('where', ['gyro', 'accelerometer'])
 def test_any_delay_is_simulated_with_its_twin(delays, where):
-    """The twin has the instants of the run, which ends where the truth does not suffice."""
+    """For any delay the twin has the instants of the run, which ends with the truth."""
     chosen = settings({**EARLY, **{f'{where}.delay_us.{axis}': delay
                                    for axis, delay in zip('xyz', delays)}})
     result = run_offline(chosen)
@@ -35,7 +35,7 @@ def test_a_lead_longer_than_the_run_leaves_the_first_reading():
 
 
 def test_the_command_writes_the_run_and_says_what_is_missing(tmp_path, capsys):
-    """The summary contains the twin and the number of readings that are missing at the end."""
+    """The summary has the twin, and the number of readings that are missing at the end."""
     words = [word for name, value in {**EARLY, 'gyro.delay_us.x': -1.0,
                                       'gyro.delay_us.z': -25000.0}.items()
              for word in ('-p', f'{name}:={value}')]
@@ -49,7 +49,11 @@ def test_the_command_writes_the_run_and_says_what_is_missing(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_racetrack_with_a_negative_delay_for_an_hour():
-    """Delays of 0, -1, 1 us of x, y, z (right, forward, up: -1, 0, 1): 0.389 / 0.244 m."""
+    """
+    An hour of racetrack with delays of 0, -1, 1 us of x, y, z errs by 0.389 / 0.244 m.
+
+    In the axes right, forward, up the delays are -1, 0, 1 us.
+    """
     values = {**FLIGHT, 'motion.kind': 'racetrack', 'gyro.delay_us.x': 0.0,
               'gyro.delay_us.y': -1.0, 'gyro.delay_us.z': 1.0, 'source': 'stream'}
     result = run_offline(settings(values))

@@ -83,7 +83,7 @@ def test_simulated_and_aided_navigation_share_the_strapdown(channel, integrated)
 
 @pytest.mark.parametrize('channel', ('free', 'damped'))
 def test_recorded_navigation_shares_the_strapdown(channel):
-    """Readings that are increments already give the same bits without a second sample."""
+    """Readings that are increments give the bits of the strapdown without a second sample."""
     options, reference = CHANNELS[channel]
     (t_ns, omega, f), *rest = samples(300)
     recorded = RecordedNavigator('rotation_vector', SPIN, PLACE,
@@ -106,7 +106,7 @@ def test_even_and_uneven_increments_agree():
 
 
 def test_a_correction_keeps_the_attitude_that_it_sets():
-    """The solution keeps the attitude that was set, to the bit, until the next interval."""
+    """The solution keeps an attitude that was set, to the bit, until the next interval."""
     (t_ns, omega, f), *rest = samples(50)
     ins = CorrectedStrapdown(t_ns, omega, f, 0.01, PLACE, SPIN, True)
     assert ins.solution == PLACE

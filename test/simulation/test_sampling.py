@@ -1,4 +1,4 @@
-"""Latency, jitter and drop-outs through the chain, and the choice of attitude algorithm."""
+"""Latency, jitter and drop-outs in a complete run, and the choice of attitude algorithm."""
 
 import numpy as np
 import pytest
@@ -13,9 +13,7 @@ NOMINAL = {'imu_time': 'nominal', 'imu_latency_us': 1500.0}
 
 
 def test_nominal_instants_undo_latency_and_jitter():
-    """
-    With imu_time nominal the solution has the bits of perfect stamps; only the stamps differ.
-    """
+    """With imu_time nominal the solution has the bits of perfect stamps; only stamps differ."""
     perfect = run_offline(settings(MOTION_2, duration_s=20.0), twin=False)
     found = run_offline(settings({**DISTURBED, **NOMINAL}, duration_s=20.0), twin=False)
     off = (found.imu.t_ns - perfect.imu.t_ns) * 1e-3
@@ -30,7 +28,7 @@ def test_nominal_instants_undo_latency_and_jitter():
 
 def test_stamps_taken_at_their_word_cost_accuracy():
     """
-    Using jittering stamps makes a random walk of w' dt times the jitter.
+    Jittering stamps cause an attitude random walk of w' dt times the jitter.
 
     With the jitter d_k of stamp k the angle of a step has the error -w' dt (d_k + d_{k-1})/2.
     """
@@ -52,7 +50,7 @@ def test_stamps_taken_at_their_word_cost_accuracy():
 
 
 def test_drop_outs_start_the_strapdown_anew():
-    """There is one gap for each run of lost samples, and the error starts at zero after each."""
+    """Each run of lost samples is one gap, after which the error starts at zero."""
     values = {**MOTION_2, 'sampling.drop_out_probability': 0.003, 'seed': 3}
     found = run_offline(settings(values, duration_s=60.0), twin=False)
     gaps = np.flatnonzero(np.diff(found.imu.t_ns) > 10_000_000)

@@ -1,4 +1,4 @@
-"""Behaviour of the filters in the closed loop with a lateral scale error of the velocity meter."""
+"""The filters in the closed guidance loop with a lateral scale error of the velocity meter."""
 
 import math
 
@@ -23,7 +23,7 @@ def steered(seconds=300.0, **more):
 @pytest.mark.slow
 @pytest.mark.parametrize('name', ['eskf', 'window_kf'])
 def test_filters_with_a_covariance_do_not_disturb(name, figures):
-    """From z0 = 100 m the vehicle returns to the leg: sideslip 0.000 deg, offset zero."""
+    """Filters with a covariance return to the leg from z0 = 100 m: sideslip 0.000 deg, z = 0."""
     result = steered(filter=name, window__cycles=100)
     beta = math.degrees(half_range(result.states.beta))
     print(f'\n{name}: beta {beta:.5f} deg, z {result.states.z[-1]:.4f} m')
@@ -37,7 +37,11 @@ def test_filters_with_a_covariance_do_not_disturb(name, figures):
     (1000, 0.1, None, None), (1000, 0.344, 347.0, 1.25), (1000, 1.0, None, None),
     (100, 0.344, 792.0, None)], ids=lambda v: f'{v}')
 def test_paper_corrected_is_quiet_but_leaves_the_leg(cycles, gain, z, v_z, figures):
-    """k_z = 0.15, engaged at once: e_v = -k_z V mean(beta in the first window), unobservable."""
+    """
+    paper_corrected engaged at the start leaves the leg by e_v = -k_z V mean(beta).
+
+    The mean is over the first window, k_z = 0.15; the error is unobservable.
+    """
     result = steered(filter='paper_corrected', gain=gain, window__cycles=cycles,
                      surrogate__k_z=0.15)
     beta = math.degrees(half_range(result.states.beta))
@@ -72,7 +76,11 @@ def test_engaged_behind_the_first_windows_it_stays(offset_m, figures):
 @pytest.mark.slow
 @pytest.mark.parametrize('offset_m, quiet', [(100.0, False), (10.0, True)])
 def test_a_large_start_diverges_where_a_small_one_is_quiet(offset_m, quiet, figures):
-    """k_z = 0.30 and K = 1 are linearly stable, but beyond the limit of the clip, 0.28."""
+    """
+    From 100 m, k_z = 0.30 and K = 1 diverge although they are linearly stable.
+
+    The limit with the saturated command is 0.28.
+    """
     result = steered(filter='paper_corrected', gain=1.0, surrogate__k_z=0.30,
                      motion__guided__offset_m=offset_m)
     beta = math.degrees(half_range(result.states.beta))

@@ -29,7 +29,7 @@ def beside(z=0.0, leg=LEGS[0]):
 
 
 def test_the_command_is_that_of_the_estimate():
-    """k1 z + k2 v_z of a true motion, and its limit."""
+    """The command is k1 z + k2 v_z of a true motion, up to its limit."""
     motion = fly(guided(offset_m=5.0), 0.5)
     made = Steering(GuidanceSettings(), motion.route.legs, motion.turns)
     truth, states = motion.one(500_000_000), motion.states(np.array([500_000_000]))
@@ -45,7 +45,7 @@ def test_the_command_is_that_of_the_estimate():
 
 
 def test_hold_course_leaves_the_offset():
-    """course_hold controls only the rate of the offset."""
+    """course_hold controls only the rate of the offset and leaves the offset."""
     made = steering(autopilot='hold_course')
     lat, lon, height, _ = beside(80.0)
     made.take(0, (lat, lon, height, (0.0, 0.0, 0.0)))
@@ -57,8 +57,9 @@ def test_hold_course_leaves_the_offset():
 
 def test_the_solution_is_as_old_as_the_latency():
     """
-    The newest solution that is at least latency_s old is used; before it the vehicle flies
-    straight.
+    The newest solution that is at least latency_s old is used.
+
+    Before there is one the vehicle flies straight.
     """
     made = steering(latency_s=0.03)
     for k in range(10):
@@ -81,7 +82,7 @@ def test_engaged_after_a_time_and_by_hand():
 
 
 def test_turns_are_flown_without_the_autopilot():
-    """After a turn it steers on the next leg; if engaged in a turn, a note says when it starts."""
+    """After a turn the autopilot steers on the next leg; a note states when it starts."""
     made = steering(turns=[(1.0, 2.0)])
     made.disengage()
     made.engage(1_500_000_000)
@@ -113,7 +114,7 @@ def test_bad_solutions_are_not_steered_by(spoil, why):
 
 
 def test_a_jump_is_not_steered_by_until_the_solution_has_gone_on():
-    """After a jump the vehicle flies straight for timeout_s without another jump."""
+    """After a jump the vehicle flies straight until timeout_s has passed without another jump."""
     made = steering(timeout_s=0.05)
     for k in range(30):
         made.take(k * TICK_NS, beside(3000.0 if k in (4, 5) else 5.0))
@@ -137,7 +138,7 @@ def test_two_publishers_that_alternate_never_steer():
 
 
 def test_a_solution_that_stops_is_held_and_then_left():
-    """The last solution is held for timeout_s, then one note is given; a new one is used again."""
+    """The last solution is held for timeout_s, then one note is given; a new one is used."""
     made = steering(timeout_s=0.05)
     made.take(0, beside(5.0))
     whys = [made.command(k * TICK_NS).why for k in range(12)]
@@ -148,7 +149,7 @@ def test_a_solution_that_stops_is_held_and_then_left():
 
 
 class Spoilt(Autopilot):
-    """A user-defined autopilot that fails."""
+    """A user's autopilot that fails."""
 
     given = math.nan
 
@@ -173,7 +174,11 @@ def test_an_autopilot_of_ones_own(monkeypatch):
 
 
 def test_phase_margin_is_that_of_the_characteristic_equation():
-    """With a delay equal to the margin, s = i w is a root; a warning sentence says so."""
+    """
+    With a delay equal to the phase margin s = i w is a root of the characteristic equation.
+
+    A message warns of this.
+    """
     gains, force, lag_s = (0.0125, 0.04), 20.0, 0.4
     w = np.array([1e-3 * k for k in range(1, 5000)])
     loop = force * (gains[0] + 1j * w * gains[1]) / ((1j * w) ** 2 * (1.0 + 1j * w * lag_s))

@@ -1,4 +1,4 @@
-"""Bad samples in the streams are reported in one sentence, and nothing is integrated over them."""
+"""Bad samples in streams are reported with one message, and no solution integrates over them."""
 
 import math
 import pickle
@@ -48,7 +48,7 @@ def imu_of(chosen):
 
 
 def refused(push, sample, sentence, restart):
-    """Check that a push is refused with one sentence."""
+    """Check that a push is refused with one message."""
     with pytest.raises(StreamFault) as fault:
         push(*sample)
     assert sentence in str(fault.value) and '\n' not in str(fault.value)
@@ -89,7 +89,7 @@ def test_stream_refuses_gaps_jumps_rates_and_norms(truth):
 
 
 def test_motion_source_refuses_a_jump_back(truth):
-    """With source motion only the stamps must rise; a jump back is refused."""
+    """With source motion stamps must increase; a jump back is refused."""
     imu = imu_of(settings(MOTION_2))
     imu.push(*truth(0)[0])
     imu.push(*truth(5)[0])
@@ -97,7 +97,7 @@ def test_motion_source_refuses_a_jump_back(truth):
 
 
 def test_truth_that_turns_too_far_is_refused(truth):
-    """Truth that turns too far between two samples is refused, because attitude is ambiguous."""
+    """Truth that rotates too far between two samples is refused: the attitude is ambiguous."""
     imu = make_imu(settings(MOTION_2, source='stream').imu_sensor)
     t, q, w, f = truth(0)[0]
     imu.push(t, q, w, f)
@@ -173,7 +173,7 @@ def test_navigator_starts_anew_after_a_jump_back(navigator, truth):
 
 
 def test_seconds_are_exact_text():
-    """``seconds`` gives every nanosecond and the sign as exact text."""
+    """``seconds`` prints every nanosecond and the sign."""
     assert seconds(1) == '0.000000001 s'
     assert seconds(-1_500_000_000) == '-1.500000000 s'
     assert seconds(1_700_000_000_123_456_789) == '1700000000.123456789 s'

@@ -34,7 +34,7 @@ def streams():
 
 
 def run(order, imu, truth):
-    """Push as a node does, the IMU where order is True; return outputs and faults."""
+    """Push as a node does, the IMU if order is True; return outputs and faults."""
     navigator, outputs, faults = Navigator(studies.settings(studies.MOTION_2).strapdown), [], []
     left = {True: list(imu), False: list(truth)}
     for of_imu in (*order, *(True,) * len(imu), *(False,) * len(truth)):
@@ -83,8 +83,8 @@ def test_a_run_after_a_jump_back_is_whole(order):
     """
     After a jump back the new run is complete, in any order of the streams.
 
-    Of the earlier run there is as much as had its truth. Both streams have begun the first run
-    before one of them ends it.
+    Of the earlier run the solution extends as far as its truth. Both streams have begun the first
+    run before one of them ends it.
     """
     imu, truth = with_gaps()
     start = [True, False] * 2
@@ -97,7 +97,7 @@ def test_a_run_after_a_jump_back_is_whole(order):
 
 
 def test_truth_that_does_not_follow_a_jump_back():
-    """If the truth does not follow a jump back, samples wait until the streams are rejoined."""
+    """If the truth does not jump back as well, samples wait until the streams agree again."""
     imu, truth = streams()
     navigator = Navigator(studies.settings(studies.MOTION_2).strapdown)
     for (_, sample), (_, pose) in zip(imu[:30], truth[:30]):

@@ -40,6 +40,7 @@ def test_a_stream_that_jumps_back_begins_anew():
 
 
 def test_of_a_silent_partner_so_many_values_are_kept():
+    """If a partner is silent, only the newest values up to the limit, here 3, are kept."""
     pairs = StampPairs(3)
     for t in range(10):
         pairs.push_first(t, t)

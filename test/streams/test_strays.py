@@ -1,4 +1,4 @@
-"""Stray samples are distinguished from restarts, so that no stream waits for the other."""
+"""Stray samples are distinguished from restarts, so that no stream waits for ever."""
 
 from ins_sim.core.navigation.live import Navigator
 from ins_sim.core.sensors.imu.stream import make_imu
@@ -43,7 +43,7 @@ def samples(count):
 @pytest.mark.parametrize('stray', ['push_imu', 'push_truth'])
 @pytest.mark.parametrize('shift', [100, -100, 1, -1], ids='{:+d}'.format)
 def test_one_stray_costs_a_few_samples(stray, shift, lead):
-    """A stray of either stream, ahead or of the past, costs at most 10 samples."""
+    """A stray in either stream, ahead or of the past, costs at most 10 samples."""
     imu, truth = samples(400)
     navigator, outputs, faults = Navigator(studies.settings(studies.MOTION_2).strapdown), [], []
 
@@ -104,7 +104,7 @@ def test_no_push_computes_more_than_a_bounded_number_of_readings(source):
 
 
 def test_a_grid_of_a_stray_is_left():
-    """A steady stream off the readings' instants is reported; jitter and other rates are not."""
+    """A steady stream between the instants of readings is reported; jitter, other rates not."""
     def check(stamps, reading_ns, dt_ns=DT):
         grid = SampleGrid(dt_ns)
         for t_ns in stamps:

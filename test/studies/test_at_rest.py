@@ -17,7 +17,7 @@ DURATION_S = 60.0
 @pytest.mark.parametrize('history', ['frozen', 'analytic'])
 @pytest.mark.parametrize('grade', ['tactical_fog', 'tactical_dtg'])
 def test_the_record_is_that_of_the_whole_chain(grade, history, output):
-    """The bits are equal with delays, every error of a grade, and tuned gyros."""
+    """The record has the bits of the complete run, with delays, errors, and tuned gyros."""
     if (grade, output) == ('tactical_dtg', 'rotation_vector'):
         pytest.skip('tuned gyros integrate')
     chosen = settings({**preset(grade), 'output': output, 'history': history,

@@ -1,8 +1,8 @@
 """
-The study of the closed loop: flights of the complete chain against published and reduced ones.
+The study of the closed loop: flights of the complete simulation, published and reduced ones.
 
-The table takes half an hour and is made by ``make figures``. The everyday test shows that the
-reduced flights, which ``test_error_loop`` compares with published ones, equal those of the chain.
+The table takes half an hour and is computed by ``make figures``. The everyday test shows that the
+reduced flights, which ``test_error_loop`` compares with published ones, equal complete ones.
 """
 
 from functools import partial
@@ -43,11 +43,11 @@ def reduced(loop, case):
     (LoopCase(0.15, 'paper_corrected', 100, 0.344, duration_s=20.0), 1e-4)], ids=str)
 def test_the_chain_is_the_reduced_loop(case, bound):
     """
-    Sideslip agrees within 1e-5 rad, offset within 1 cm, in 20 s from 100 m.
+    Complete and reduced flights agree to 1e-5 rad in sideslip and 1 cm in offset.
 
-    The reduced loop neglects terms of that size: the Coriolis force on velocity errors of metres
-    per second, 3e-4 m/s^2, and the curvature of the leg. paper_corrected sees both as acceleration
-    errors, ten times as large.
+    The flights last 20 s from 100 m. The reduced loop neglects terms of that size: the Coriolis
+    force on velocity errors of metres per second, 3e-4 m/s^2, and the curvature of the leg.
+    paper_corrected sees both as acceleration errors, ten times as large.
     """
     settings = chosen()
     flight, other = fly_case(settings, case), reduced(study_loop(settings), case)
@@ -59,9 +59,7 @@ def test_the_chain_is_the_reduced_loop(case, bound):
 
 @pytest.mark.slow
 def test_the_map_is_that_of_the_linear_theory_where_nothing_saturates():
-    """
-    From 1 m within 1 % of the linear limits; from 100 m, with a saturated command, not higher.
-    """
+    """From 1 m limits are linear within 1 %; from 100 m, with a limited command, not higher."""
     panel = MapPanel('conventional', 100, True, 0.5, 5.0)
     curves = map_curves(study_loop(chosen()), panel, 3, MOST)
     print(curves)
@@ -70,7 +68,7 @@ def test_the_map_is_that_of_the_linear_theory_where_nothing_saturates():
 
 
 def test_what_is_measured_of_an_oscillation():
-    """Range, frequency and growth of a known oscillation."""
+    """Range, frequency and growth of a known oscillation are measured."""
     t = np.arange(0.0, 300.0, 0.1)
     x = np.exp(-0.005 * t) * np.cos(0.345 * t + 0.3)
     assert frequency(t, x) == pytest.approx(0.345, rel=1e-3)
@@ -82,7 +80,7 @@ def test_what_is_measured_of_an_oscillation():
 
 
 def case_name(case):
-    """Return filter, N and gain of a LoopCase for the name of a figure."""
+    """Return filter, N and gain of a LoopCase as part of the name of a figure."""
     return f'{"sliding" if case.slides else case.filter}.{case.cycles}.{case.gain:g}'
 
 
@@ -97,11 +95,11 @@ def figure_name(case):
 @pytest.mark.figures
 def test_the_table(figures):
     """
-    Every published row: quiet ones below 0.05 deg, others within 3 %.
+    Every published row: quiet cases stay below 0.05 deg, others agree within 3 %.
 
     The published simulation has the lateral channel alone and is compared with that. The filters
     aid the forward velocity as well, which damps conventional a little where beta is large: the
-    chain is compared with the reduced flight with both channels.
+    complete simulation is compared with the reduced flight with both channels.
     """
     settings = chosen()
     loop = study_loop(settings)
@@ -139,8 +137,9 @@ def test_the_table(figures):
 @pytest.mark.figures
 def test_limits_of_the_chain_are_the_linear_ones(figures):
     """
-    Limits from the growth of flights 2 % on either side, from 1 m, agree with the linear ones to 1
-    %.
+    Limits by the growth of flights 2 % on either side agree with the linear ones to 1 %.
+
+    The flights start 1 m off the leg.
     """
     settings = chosen()
     linear = linear_limits(study_loop(settings))
@@ -154,7 +153,7 @@ def test_limits_of_the_chain_are_the_linear_ones(figures):
 
 @pytest.mark.figures
 def test_conditions_change_nothing_of_it(figures):
-    """Fast conventional oscillates by degrees under all conditions, the others do not."""
+    """Under all conditions fast conventional oscillates by degrees, the others do not."""
     for name, more in CONDITIONS.items():
         flights = spread(partial(fly_case, chosen(*more)), VARIED)
         found = [flight.beta_deg for flight in flights]

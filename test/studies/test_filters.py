@@ -1,7 +1,7 @@
 """
 The tables of the filter study: rms errors of several flights, and consistency of the filters.
 
-The published tables are of twelve flights, which take half an hour and are made by
+The published tables are of twelve flights, which take half an hour and are simulated by
 ``make figures``. Four flights show whether a filter still works; their bounds are wider by the
 larger scatter of four.
 """
@@ -28,7 +28,7 @@ def numbers(few):
 
 
 def flown(count, names, cases, assignments=()):
-    """Return the rows and the flights of cases on the first flights."""
+    """Return the rows and the flights of cases, for the first flights."""
     settings = parameter_files.read_aided([resources.config(name) for name in names], assignments)
     flights = list(zip(*spread(partial(fly_filters, settings, cases), range(count))))
     rows = [filter_row(case, list(f)) for case, f in zip(cases, flights)]
@@ -46,7 +46,7 @@ def believed(flights):
 
 
 def scatter(count, probability=0.995):
-    """Return the factors within which the rms of two components over flights is about sigma."""
+    """Return the factors between which the rms of two components over flights is, about sigma."""
     freedom = 2 * count
     return [float(np.sqrt(chi2.ppf(p, freedom) / freedom)) for p in (1 - probability, probability)]
 
@@ -54,12 +54,12 @@ def scatter(count, probability=0.995):
 @numbers(4)
 def test_fifty_minutes_by_every_filter(count, figures):
     """
-    The published errors are met within the scatter of the flights (99 %).
+    After fifty minutes the filters have the published errors, within the scatter (99 %).
 
     The factors for twelve flights are 0.64 and 1.38, for four 0.41 and 1.66. The published "rms
-    horizontal error" is taken as that at the end of the flight for every filter. Known deviation:
-    window_kf has 0.87 km there; its published 0.5 km is met by the rms over the whole flight,
-    which is tested instead.
+    horizontal error" is interpreted as that at the end of the flight for every filter. Known
+    deviation: window_kf has 0.87 km there; its published 0.5 km is met by the rms over the whole
+    flight, which is tested instead.
     """
     names = ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf', 'eskf')
     rows, flights = flown(count, FILES, [FilterCase(name, 1000) for name in names])
@@ -71,7 +71,7 @@ def test_fifty_minutes_by_every_filter(count, figures):
             ('eskf', 'end_m', 180.0, 200.0)):
         assert low * least < getattr(by[name], figure) < high * most, name
     record(figures, count, rows, flights)
-    # The printed scheme is for straight legs: it refuses every window of a weaving heading.
+    # The printed scheme is for straight legs: it rejects every window of a weaving heading.
     assert by['paper'].refused == count * 300
     assert 'in which the body turns' in by['paper'].reason
     assert by['paper'].end_m == by['free'].end_m
@@ -94,9 +94,9 @@ def record(figures, count, rows, flights):
 @numbers(2)
 def test_averaging_may_be_long(count, figures):
     """
-    The eskf at N = 10 to 6000 cycles: sigma and error are equal within 20 %.
+    At N = 10 to 6000 cycles sigma and error of the eskf are equal within 20 %.
 
-    The specification asks for 20 %. The same flights are compared, so that two of them suffice.
+    The specification requires 20 %. The same flights are compared, so that two of them suffice.
     """
     rows, flights = flown(count, FILES, [FilterCase('eskf', n) for n in (1000, 10, 100, 6000)])
     record(figures, count, rows[1:], flights[1:])
@@ -111,12 +111,12 @@ def test_averaging_may_be_long(count, figures):
                                               ('tactical', 508.0)])
 def test_fifty_minutes_after_ten_with_gnss(grade, published, count, figures):
     """
-    Error at the end, and a mounting of 20 arcmin known to 2 when GNSS fails.
+    Fifty minutes after GNSS fails, error and sigma are as published; mounting to 2 of 20 arcmin.
 
     The filter's sigma is within 30 % of the reference (only the names of the grades navigation and
-    tactical were given; their values are ours), and the errors of the flights agree with it. Four
-    flights are too few for this: their errors lie mostly along one axis, so that they have about
-    half of the degrees of freedom that the bound assumes.
+    tactical were given; their values are ours), and the errors of the flights agree with it. GNSS
+    is available for ten minutes. Four flights are too few for this: their errors lie mostly along
+    one axis, so that they have about half of the degrees of freedom that the bound assumes.
     """
     rows, flights = flown(
         count, ('gnss_outage_flight', f'grade_{grade}'), [FilterCase('eskf', 1000)],

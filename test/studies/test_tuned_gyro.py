@@ -19,7 +19,7 @@ from support.places import ROOT
 CONFIG = ROOT / 'config'
 FILES = sorted(CONFIG.glob('dtg_study_*.yaml'))
 
-# Values of the `sapegin_2016` preset by the specification, deg.
+# Values of the `sapegin_2016` preset in the specification, deg.
 SPECIFIED = {0.5: 9.978, 1.0: 9.912, 2.0: 9.661, 4.0: 8.819, 8.0: 6.831,
              130.0: 9.972, 143.0: 9.966, 170.0: 9.952, 200.0: 9.933, 250.0: 9.896, 270.0: 9.879,
              320.0: 9.832, 337.0: 9.814}
@@ -33,7 +33,7 @@ def read(name, *assignments):
 
 @pytest.fixture(scope='module')
 def tables():
-    """Both tables of the paper, RK4 at 0.75 ms."""
+    """Return both tables of the paper, RK4 at 0.75 ms."""
     return {name: study_table(read(name)) for name in ('frequency', 'speed')}
 
 
@@ -52,7 +52,7 @@ def record(figures, tables, name):
 
 
 def test_table_of_frequencies(tables, figures):
-    """The table over frequencies is met to 0.012 deg (two-decimal cells) and 0.05 deg."""
+    """The table over frequencies agrees to 0.012 deg (two-decimal cells) and 0.05 deg."""
     show(tables['frequency'], 'rad/s')
     record(figures, tables, 'frequency')
     assert [c.value for c in tables['frequency']] == [0.5, 1.0, 2.0, 4.0, 8.0]
@@ -62,7 +62,7 @@ def test_table_of_frequencies(tables, figures):
 
 
 def test_table_of_speeds(tables, figures):
-    """All eight cells of the table over rotor speeds are met to 0.01 deg."""
+    """All eight cells of the table over rotor speeds agree to 0.01 deg."""
     show(tables['speed'], 'Hz')
     record(figures, tables, 'speed')
     assert len(tables['speed']) == 8
@@ -78,7 +78,11 @@ def test_both_algorithms_agree(tables):
 
 
 def test_amplitudes_are_those_of_a_first_order_lag(tables):
-    """To 1e-3 deg: 10 / sqrt(1 + (w T)^2), because A is small and the gyro settles in 20 s."""
+    """
+    Amplitudes are 10 / sqrt(1 + (w T)^2) to 1e-3 deg, those of a first-order lag.
+
+    A is small, and the gyro settles within 20 s.
+    """
     lag = tuned_gyro_report(PRESETS['sapegin_2016']).time_constant_s
     for c in tables['frequency']:
         assert c.poisson_deg == pytest.approx(10.0 / math.hypot(1.0, c.value * lag), abs=1e-3)
@@ -95,7 +99,7 @@ def test_exact_propagation_of_the_damped_preset(tables):
 
 
 def test_stability_limits(figures):
-    """129.4 and 337.4 Hz at 0.75 ms, found by search; the paper states 130 and 337."""
+    """The limits at 0.75 ms are 129.4 and 337.4 Hz, found by search; published are 130 and 337."""
     settings = read('speed')
     assert settings.paper_limits_hz == (130.0, 337.0)
     step_s = 1e-3 * settings.step_ms
@@ -110,7 +114,7 @@ def test_stability_limits(figures):
 @pytest.mark.parametrize('preset, method', [('sapegin_2016', 'rk4'), ('tactical', 'rk4'),
                                             ('sapegin_2016_damped', 'exact')])
 def test_compiled_rocking_is_the_plain_one(preset, method, monkeypatch):
-    """The compiled rocking equals the plain one, bit for bit."""
+    """The compiled oscillation equals the plain one, bit for bit."""
     pytest.importorskip('numba')
     found = []
     for samples in (10**9, 0):
@@ -129,9 +133,7 @@ def test_unstable_speeds_are_refused():
 
 
 def test_progress_is_told_and_the_amplitude_scales():
-    """
-    progress is called after each cell; a quarter of the rocking gives a quarter of the amplitude.
-    """
+    """progress is called after each cell; a quarter of the motion gives a quarter amplitude."""
     told = []
     few = ('values:=[400.0]', 'paper_deg:=[]', 'step_ms:=1.0')
     (whole,) = study_table(read('frequency', *few), lambda: told.append(1))
@@ -142,7 +144,9 @@ def test_progress_is_told_and_the_amplitude_scales():
 
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.stem)
 def test_every_shipped_study_runs(path, tmp_path, capsys):
-    """Each file alone, shortened to one cell with a coarse step, saves its figure and no other."""
+    """
+    Each shipped file, shortened to one cell with a coarse step, saves its figure and no other.
+    """
     settings = read(path.stem.removeprefix('dtg_study_'))
     assert len(settings.paper_deg) == len(settings.values)
     assert main(['dtg-study', '--params-file', path.stem, '-o', str(tmp_path),
@@ -165,7 +169,7 @@ def test_every_shipped_study_runs(path, tmp_path, capsys):
     ('step_ms:=0.0', 'step_ms is 0 ms; expected 0.001 to 100 ms'),
 ])
 def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
-    """Bad settings give exit code 2 with one message, and nothing is written."""
+    """Invalid settings give exit code 2 with one message, and nothing is written."""
     out = tmp_path / 'study'
     assert main(['dtg-study', '--params-file', 'dtg_study_frequency', '-p', assignment, '-o',
                  str(out)]) == 2
@@ -174,7 +178,11 @@ def test_bad_settings_are_one_sentence(assignment, sentence, tmp_path, capsys):
 
 
 def test_files_of_another_kind_are_refused(tmp_path, capsys):
-    """A run is refused as a study and vice versa; two files of one name would share a figure."""
+    """
+    A file of a run is refused as a study and vice versa, and so are two files of one name.
+
+    They would share a figure.
+    """
     assert main(['dtg-study', '--params-file', 'other_simulator']) == 2
     assert "unknown section '/**/truth_adapter'; the nearest known one" in capsys.readouterr().err
     assert main(['dtg-study', '--params-file', 'imu_tactical_fog']) == 2

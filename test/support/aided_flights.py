@@ -1,4 +1,6 @@
-"""Flights in closed form for the tests of the aided navigator, their readings and their fixes."""
+"""
+Closed-form flights for the tests of the aided navigator, with IMU samples and velocity fixes.
+"""
 
 import math
 
@@ -19,13 +21,13 @@ DT_NS = 10_000_000
 def circle(rate_deg_s=1.2, speed=200.0):
     """Return a flat turn at constant speed, heading along the track, wings level."""
     w = math.radians(rate_deg_s)
-    # where meridians do not converge, for psi is counted from north
+    # Without meridian convergence, because psi is counted from north.
     lat0, lon0, radius = math.radians(1.0), math.radians(37.0), speed / w
     r_n, r_e = (r + 500.0 for r in ellipsoid.radii(math.sin(lat0)))
 
     def pose(t):
         s, c = taylor.sincos(t * w)
-        # clockwise from north: east = r (1 - cos), north = r sin
+        # Clockwise from north: east = r (1 - cos), north = r sin.
         q = angles.from_angles(t * -w, t.constant(0.0), t.constant(0.0))
         return (s * (radius / r_n) + lat0,
                 (1.0 - c) * (radius / (r_e * math.cos(lat0))) + lon0, t.constant(500.0), q)
@@ -34,7 +36,7 @@ def circle(rate_deg_s=1.2, speed=200.0):
 
 
 def straight(speed=200.0):
-    """Return a flight north on a meridian, which is a great circle."""
+    """Return a flight north along a meridian, which is a great circle."""
     lat0, lon0 = math.radians(55.0), math.radians(37.0)
 
     def pose(t):
@@ -47,7 +49,8 @@ def straight(speed=200.0):
 
 def samples_of(motion, count, bias=(0.0, 0.0, 0.0)):
     """
-    Return what AidedNavigator.step takes, for count samples at 100 Hz from motion time 0.
+    Return the IMU samples that AidedNavigator.step accepts: count samples at 100 Hz from motion
+    time 0.
 
     bias: added to perfect readings of the accelerometers, m/s^2.
     """
@@ -60,7 +63,12 @@ def samples_of(motion, count, bias=(0.0, 0.0, 0.0)):
 
 
 def perfect_fixes(motion, windows, cycles, offset=(0.0, 0.0), sigma=(1.0, 1.0), late_ns=0):
-    """Return the VelocityFixes of the first windows, with an offset, m/s, arriving late."""
+    """
+    Return the VelocityFixes of the first windows.
+
+    offset: added to the velocity, m/s; late_ns: time from the end of the window to the arrival,
+    ns.
+    """
     v_b = body_velocity(motion.at(np.arange(windows * cycles + 1) * DT_NS))[:, :2]
     means = (0.5 * (v_b[:-1] + v_b[1:])).reshape(windows, cycles, 2).mean(axis=1) + offset
     span = cycles * DT_NS

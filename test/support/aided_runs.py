@@ -1,4 +1,4 @@
-"""Short aided runs for the tests: their parameters, and what the command line writes of them."""
+"""Short aided runs for the tests: their parameters, and the files that the command line writes."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.cli.main import main
@@ -7,14 +7,14 @@ from ins_sim.core.motion.factory import make_motion
 from ins_sim.core.simulation.inertial import simulate
 
 FILES = ('gnss_outage_flight', 'grade_mid')
-# GNSS is out for the last of the 90 s; the meter is turned by 20 arcmin and may be by 30
+# GNSS is out for the last of the 90 s. The meter is rotated by 20 arcmin; the filter allows 30.
 FLIGHT = ('duration_s:=90.0', 'gnss_model.use:=true', 'window.cycles:=100',
           'outages.start_s:=[60.0]', 'outages.end_s:=[300.0]',
           'antennas.mounting_yaw_arcmin:=20.0', 'meter_model.mounting_sigma_arcmin:=30.0')
 
 
 def settings(*more, flight=FLIGHT):
-    """Return AidedSimulationSettings of the flight and more assignments."""
+    """Return AidedSimulationSettings of the flight with further parameter assignments."""
     return parameter_files.read_aided([resources.config(name) for name in FILES],
                                       [*flight, *more])
 

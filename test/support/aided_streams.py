@@ -1,4 +1,4 @@
-"""The streams of an aided run, pushed in any order."""
+"""The input streams of an aided run, and functions that push them in any order."""
 
 from functools import lru_cache
 
@@ -39,7 +39,7 @@ def scene(*more):
     """
     Return (AidedSimulationSettings, AidedResult offline, events by stream) of a short flight.
 
-    more: pairs (dotted name, value) beside those of VALUES.
+    more: pairs (dotted name, value) in addition to VALUES.
     """
     chosen = chosen_settings({**VALUES, **dict(more)})
     simulation = chosen.simulation
@@ -63,7 +63,10 @@ def scene(*more):
 
 
 def push(stream, name, event, faults):
-    """Push as a node does; return the outputs."""
+    """
+    Push one event as a node does, with a reset after a fault that asks for one; return the
+    outputs.
+    """
     method = getattr(stream, name if name.startswith('push') else 'push_fix')
     for _ in range(2):
         try:
@@ -77,7 +80,9 @@ def push(stream, name, event, faults):
 
 
 def mixed(streams, rng):
-    """Yield (name, event) of streams in a random order that keeps the order of each."""
+    """
+    Yield (name, event) of all streams in a random order that keeps the order within each stream.
+    """
     order = [name for name, events in streams.items() for _ in events]
     rng.shuffle(order)
     places = dict.fromkeys(streams, 0)
@@ -88,9 +93,9 @@ def mixed(streams, rng):
 
 def run_stream(streams, rng, chosen=None):
     """
-    Return outputs, faults and the stream after events in random order.
+    Return outputs, faults and the stream after all events were pushed in random order.
 
-    chosen: AidedSimulationSettings, if not those of ``scene()``.
+    chosen: AidedSimulationSettings; by default those of ``scene()``.
     """
     chosen = scene()[0] if chosen is None else chosen
     stream, outputs, faults = AidedStream(chosen.aided_navigator), [], []

@@ -7,12 +7,12 @@ from ins_sim.core.motion.factory import make_motion
 
 
 def motion_of(kind, **more):
-    """Return a motion of a kind at the test datum."""
+    """Return a motion of one kind at the test datum."""
     s = settings({'motion.kind': kind, 'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0},
                  **more).motion_generator
     return make_motion(s.motion, s.datum, s.earth)
 
 
 def matrix(q):
-    """Return C of a quaternion by SciPy."""
+    """Return the rotation matrix of a quaternion computed by SciPy."""
     return Rotation.from_quat(q).as_matrix()

@@ -19,14 +19,14 @@ SIGMAS = {'initial.position_sigma_m': 1.0, 'initial.velocity_sigma_m_s': 0.05,
 
 
 def settings_of(motion, instrument, seconds, **values):
-    """Return SimulationSettings of a motion of FILES, an instrument file and its duration."""
+    """Return SimulationSettings of a motion (key of FILES), an instrument file and a duration."""
     files = [resources.parameter_file(name) for name in (*FILES[motion], instrument)]
     return parameter_files.read(files, {
         'duration_s': seconds, **(REST if motion == 'rest' else {}), **values})
 
 
 def without_errors(settings):
-    """Return the settings with a perfect instrument in the sensor, none in the strapdown less."""
+    """Return the settings with a perfect sensor; the error model of the strapdown is kept."""
     sensor = settings.imu_sensor
     perfect = {name: replace(getattr(sensor, name), errors=type(getattr(sensor, name).errors)())
                for name in ('gyro', 'accelerometer')}
@@ -34,7 +34,9 @@ def without_errors(settings):
 
 
 def steps_of(settings, cut=lambda imu: [imu], loop=navigate_blocks):
-    """Return [(t_ns, P, mean, solution)] of a run; cut: into what its blocks are cut."""
+    """
+    Return [(t_ns, P, mean, solution)] of a run; cut: function that divides each block of samples.
+    """
     found = []
     free = free_covariance(settings.strapdown, lambda free: found.append(
         (free.t_ns, free.p, free.mean, free.solution)))
@@ -47,7 +49,9 @@ def steps_of(settings, cut=lambda imu: [imu], loop=navigate_blocks):
 
 
 def sigmas_at(step):
-    """Return standard deviations (9,) of inertial attitude, velocity and position, of a step."""
+    """
+    Return the standard deviations (9,) of inertial attitude, velocity and position at a step.
+    """
     _, p, mean, (lat, _, height, _, _) = step
     turn = np.eye(GROWING)
     turn[6, 1], turn[7, 0], turn[8, 0] = turn_by_position(lat, height)
@@ -56,7 +60,7 @@ def sigmas_at(step):
 
 
 def drawn_initial(settings):
-    """Return a function of the number of a run that draws its Initial errors from the sigmas."""
+    """Return a function of the run number that draws initial errors from the sigmas of Initial."""
     initial = settings.strapdown.initial
 
     def drawn(run):
@@ -71,9 +75,10 @@ def drawn_initial(settings):
 
 def ratios(settings, instants_s, runs=60):
     """
-    Return predicted over Monte Carlo sigma, (instants, 9): attitude, velocity, position.
+    Return predicted sigma divided by Monte Carlo sigma, (instants, 9): attitude, velocity,
+    position.
 
-    The errors of the runs are taken about the truth, not about their mean.
+    The errors of the runs are rms values about the truth, not about their mean.
     """
     ensemble = simulate_runs(settings, read_motion(settings.motion_generator), range(runs),
                              instants_s, initial=drawn_initial(settings))
@@ -85,5 +90,5 @@ def ratios(settings, instants_s, runs=60):
     stamps = np.array([step[0] for step in steps])
     last = np.searchsorted(stamps, 1e9 * np.array(instants_s) + 0.5) - 1
     with np.errstate(divide='ignore'):
-        # what is held does not err
+        # A held vertical channel has no error, so the divisor may be zero.
         return np.array([sigmas_at(steps[k]) for k in last]) / rms

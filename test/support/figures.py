@@ -1,9 +1,9 @@
 """
-Fixture ``figures``: what tests measure is written to one JSON file at the end of the run.
+Fixture ``figures``: values that tests measure are written to one JSON file at the end of the run.
 
-A figure travels with the report of its test, so that workers of pytest-xdist need no file of
-their own. The file is added to, so that several runs (everyday, live, slow) fill one file; the
-newest value of a name wins.
+A figure is sent with the report of its test, so that workers of pytest-xdist need no file of their
+own. New figures are added to the file, so that several runs (everyday, live, slow) fill one file;
+the newest value of a name replaces older ones.
 """
 
 import json
@@ -19,27 +19,27 @@ KEY = 'figure'
 
 
 class Figures:
-    """Notes the figures of one test."""
+    """Record the figures of one test."""
 
     def __init__(self, node):
         self._node = node
 
     def record(self, name, value, unit='', expected=None, source=''):
         """
-        Note a figure.
+        Record a figure.
 
         Parameters
         ----------
         name : str
             Words joined by dots; unique over all tests.
         value : float, int, str or sequence of them
-            What was found.
+            Measured value.
         unit : str
-            Unit of the value, and of what is expected.
+            Unit of the value and of the expected value.
         expected : as value, optional
-            What is published, asked or computed independently.
+            Published, required or independently computed value.
         source : str
-            Where the expected value comes from.
+            Source of the expected value.
         """
         self._node.user_properties.append((KEY, {
             'name': name, 'value': _plain(value), 'unit': unit, 'expected': _plain(expected),
@@ -60,24 +60,24 @@ def figures(request):
 
 
 def machine():
-    """Return {word: value} of what the figures were computed with."""
+    """Return {name: value} describing the machine and the versions that computed the figures."""
     return {'version': __version__, 'python': platform.python_version(), 'numpy': np.__version__,
             'machine': f'{platform.machine()}, {os.cpu_count()} cores'}
 
 
 class Collector:
-    """Gathers the figures of all reports of a session and writes them at its end."""
+    """Collect the figures of all test reports of a session and write them at its end."""
 
     def __init__(self, path):
         self._path = Path(path)
         self._found = {}
 
     def pytest_runtest_logreport(self, report):
-        """Take the figures of a test that has passed."""
+        """Store the figures of a test that has passed."""
         if report.when == 'call' and report.passed:
             for key, figure in report.user_properties:
                 if key == KEY:
-                    # pytest-xdist adds the group of a test to its name
+                    # pytest-xdist appends the group of a test to its name.
                     self._add(report.nodeid.split('@')[0], dict(figure))
 
     def _add(self, test, figure):
@@ -88,7 +88,7 @@ class Collector:
         self._found[name] = {**figure, 'test': test}
 
     def pytest_sessionfinish(self):
-        """Write the file, with what former runs have left in it."""
+        """Write the file, keeping the figures of earlier runs."""
         if not self._found:
             return
         known = json.loads(self._path.read_text())['figures'] if self._path.exists() else {}
@@ -99,13 +99,16 @@ class Collector:
 
 
 def pytest_addoption(parser):
-    """Let the place of the file be chosen."""
+    """Add the command line option for the path of the file."""
     parser.addoption('--figures', default=None, metavar='FILE',
                      help='where to write the figures (default: build/figures.json)')
 
 
 def pytest_configure(config):
-    """Collect in the process that sees all reports: a worker of pytest-xdist does not."""
+    """
+    Register the collector in the main process only: workers of pytest-xdist do not see all
+    reports.
+    """
     if not hasattr(config, 'workerinput'):
         path = config.getoption('figures') or config.rootpath / 'build' / 'figures.json'
         config.pluginmanager.register(Collector(path), 'figures-collector')

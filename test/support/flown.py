@@ -1,4 +1,4 @@
-"""A route for the tests: its settings, its motion, and what an observer of the truth sees."""
+"""A route for the tests: its settings, its motion, and quantities derived from the truth alone."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ ROUGH = {**WIND, **WEAVE, **GUSTS}
 
 
 def route(*groups, **more):
-    """Return the RouteMotion of groups of settings."""
+    """Return the RouteMotion built from groups of settings."""
     values = dict(POINTS)
     for group in groups:
         values.update(group)
@@ -25,12 +25,12 @@ def route(*groups, **more):
 
 
 def instants(motion, step_s, first_s=0.0):
-    """Return motion times up to the arrival, int64 ns."""
+    """Return motion times from first_s to the arrival, int64 ns."""
     return np.arange(round(first_s * 1e9), round(motion.end_s * 1e9), round(step_s * 1e9))
 
 
 def on_legs(motion, t_ns):
-    """Return which instants lie on legs, not in turns."""
+    """Return a mask of the instants on legs, not in turns."""
     t, free = t_ns * 1e-9, np.ones(len(t_ns), dtype=bool)
     for start, end in motion.turns:
         free &= (t < start) | (t > end)
@@ -45,10 +45,10 @@ def gust_velocity(motion, t_ns):
 
 
 def air_velocity(motion, truth):
-    """Return velocity less wind and gusts, East, North, Up (n, 3), m/s."""
+    """Return velocity minus wind and gusts, East, North, Up (n, 3), m/s."""
     return truth.v_n - np.array((*motion.wind, 0.0)) - gust_velocity(motion, truth.t_ns)
 
 
 def in_body(truth, v_n):
-    """Return vectors of n (n, 3) in b."""
+    """Return vectors (n, 3) transformed from navigation axes n to body axes b."""
     return np.stack(quaternion.rotate_back(truth.q_nb.T, v_n.T), axis=-1)

@@ -1,4 +1,4 @@
-"""Node processes and a listener for the tests that talk over DDS."""
+"""Node processes and a listener for the tests that communicate over DDS."""
 
 import os
 from pathlib import Path
@@ -12,12 +12,13 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Writer
 from support.places import ROOT
 
-# How long tests wait for what must come. Only a hang takes as long, so a busy machine fails none.
+# Longest wait of a test for an expected event. Only a hang takes as long, so that no test fails on
+# a busy machine.
 GUARD_S = 120.0
 
 
 class Chain:
-    """Node processes of one ROS domain; ``texts()`` ends them and gives what they wrote."""
+    """Node processes of one ROS domain; ``texts()`` ends them and returns their output."""
 
     def __init__(self, domain, folder):
         self.environment = {**os.environ, 'ROS_DOMAIN_ID': str(domain),
@@ -30,7 +31,7 @@ class Chain:
         """Start a node with {name: value} parameters and further ROS arguments."""
         command = [sys.executable, '-m', 'ins_sim.ros.main', node, '--ros-args', *arguments]
         if node == 'motion_generator':
-            # Stamps are motion time, whenever the test runs.
+            # Stamps are motion time, independent of the time of day.
             parameters = {'time.epoch': 'fixed', 'time.epoch_s': 0, **dict(parameters)}
         for name, value in dict(parameters).items():
             command += ['-p', f'{name}:={value}']
@@ -50,19 +51,19 @@ class Chain:
         return self.processes[key]
 
     def text(self, process):
-        """Return what a process has written so far."""
+        """Return the output of a process so far."""
         key = next(k for k, p in self.processes.items() if p is process)
         return (self._folder / key).read_text()
 
     def wait_text(self, process, part, timeout_s=GUARD_S):
-        """Wait until a process has written this."""
+        """Wait until the output of a process contains a text."""
         end = time.monotonic() + timeout_s
         while part not in self.text(process):
             assert time.monotonic() < end, f'{part!r} not in: {self.text(process)}'
             time.sleep(0.05)
 
     def end(self):
-        """Interrupt what still runs, and return the exit codes."""
+        """Interrupt the processes that still run; return the exit codes."""
         for process in self.processes.values():
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
@@ -74,7 +75,7 @@ class Chain:
 
 
 def wait_handlers(process, timeout_s=GUARD_S):
-    """Wait until a process catches SIGTERM: before that no program can end cleanly."""
+    """Wait until a process handles SIGTERM: before that it cannot end cleanly."""
     end = time.monotonic() + timeout_s
     while time.monotonic() < end:
         for line in Path(f'/proc/{process.pid}/status').read_text().splitlines():
@@ -86,11 +87,11 @@ def wait_handlers(process, timeout_s=GUARD_S):
 
 def run_in_real_time(chain, listener, awaited, values, names):
     """
-    Run six nodes, the generator last, and hear them until it has ended.
+    Run six nodes, the generator last, and record their messages until it has ended.
 
-    awaited: Topics whose publishers are there before it starts; values: parameters of all nodes;
-    names: parameter files.  Returns {name: process} of the others, that of the generator, and how
-    long it ran, s.
+    awaited: Topics that must have publishers before the generator starts; values: parameters of
+    all nodes; names: parameter files. Returns {name: process} of the other nodes, the process of
+    the generator, and its running time, s.
     """
     files = [word for name in names for word in ('--params-file', str(resources.config(name)))]
     nodes = {process.name: chain.start(process.executable, values, files)
@@ -115,11 +116,12 @@ def run_in_real_time(chain, listener, awaited, values, names):
 
 class Listener:
     """
-    Hears Topics as {topic name: {stamp_ns: doubles}} in a context of its own; raw: their bytes.
+    Receive Topics as {topic name: {stamp_ns: doubles}} in a context of its own; raw: their bytes.
 
-    It acknowledges as 'listener' what it has heard on all of them, later ones apart, which come
-    when sample 0 is answered; their publishers are there by then.  ``repeats`` counts messages
-    whose stamp was heard before.
+    The listener acknowledges, under the name 'listener', every stamp it has received on all
+    topics. Topics in ``later`` are not awaited, because their first message follows the
+    acknowledgement of sample 0; only their publishers must exist. ``repeats`` counts messages with
+    a stamp that was received before.
     """
 
     def __init__(self, domain, wanted, namespace='', later=()):
@@ -138,11 +140,11 @@ class Listener:
         self._ack, self._publisher = Writer(topics.HEADER, 'listener'), ack_publisher(self.node)
 
     def poll(self):
-        """Take what has come."""
+        """Receive the waiting messages."""
         for queue, reader, name in self._queues:
             while (data := queue.take()) is not None:
                 stamp_ns, *runs = reader.read(data)
-                # the last one heard stands last, be it a repeated stamp of a run that starts anew
+                # Insert last, even if the stamp is repeated because the run was reset.
                 self.repeats += self.heard[name].pop(stamp_ns, None) is not None
                 self.heard[name][stamp_ns] = sum(runs, ())
                 self.raw[name][stamp_ns] = data
@@ -152,7 +154,7 @@ class Listener:
             self._publisher.publish(self._ack.pack(common))
 
     def poll_until(self, condition, timeout_s=GUARD_S):
-        """Take what comes until the condition holds."""
+        """Receive messages until the condition holds."""
         end = time.monotonic() + timeout_s
         while not condition():
             assert time.monotonic() < end, {k: len(v) for k, v in self.heard.items()}
@@ -160,7 +162,7 @@ class Listener:
             time.sleep(0.02)
 
     def poll_for(self, length_s):
-        """Take what comes in this time: longer than a dropped message takes to come."""
+        """Receive messages for a time that exceeds the delay of a resent message."""
         end = time.monotonic() + length_s
         self.poll_until(lambda: time.monotonic() > end)
 
@@ -186,7 +188,7 @@ class Listener:
         return future.result()
 
     def diagnostics(self):
-        """Return a list that grows by (node, level, message) while the node spins."""
+        """Return a list that is extended by (node, level, message) while the node spins."""
         from diagnostic_msgs.msg import DiagnosticArray
         seen = []
         self.node.create_subscription(

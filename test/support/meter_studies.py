@@ -1,4 +1,4 @@
-"""Settings, flights and readings that the tests of the velocity meter share."""
+"""Settings, flights and readings shared by the tests of the velocity meter."""
 
 from dataclasses import astuple
 import math
@@ -11,7 +11,7 @@ from ins_sim.settings.velocity_meter import VelocityMeterSettings
 from ins_sim.core.sensors.velocity_meter.pulses import SignalWindows
 
 DT_NS = 10_000_000
-# an instrument without errors of its own
+# An instrument without errors.
 PERFECT = {'surrogate.sigma_x_m_s': 0.0, 'surrogate.sigma_z_m_s': 0.0, 'surrogate.slip_x': 0.0,
            'surrogate.slip_z_m_s': 0.0, 'surrogate.bias_x_m_s': 0.0}
 
@@ -24,22 +24,23 @@ def meter_settings(values=None, **more):
 
 
 def body(speed, beta, alpha=0.0):
-    """Return the velocity in body axes FLU of sideslip beta and angle of attack alpha, rad."""
+    """Return the velocity in body axes FLU for sideslip beta and angle of attack alpha, rad."""
     return (speed * math.cos(beta) * math.cos(alpha), -speed * math.sin(beta),
             -speed * math.cos(beta) * math.sin(alpha))
 
 
 def flight(cycles, v_b=(250.0, 0.0, 0.0), first=0):
-    """Return t_ns, v_b, height of a steady flight over so many cycles."""
+    """Return t_ns, v_b, height of a steady flight over a number of cycles."""
     t_ns = np.arange(first, first + cycles + 1) * DT_NS
     return t_ns, np.tile(np.array(v_b), (cycles + 1, 1)), np.full(cycles + 1, 500.0)
 
 
 def errors(settings, windows, beta=0.0, speed=250.0):
     """
-    Return the errors of V_x1, V_z1, V_z1 by delays of the valid windows, (n, 3), mode signal.
+    Return the errors of V_x1, V_z1 and V_z1 from delays in mode signal, (n, 3), of the valid
+    windows.
 
-    Also the part of the windows that is valid.
+    Also return the fraction of windows that are valid.
     """
     made, v = SignalWindows(settings), (speed * math.cos(beta), 0.0, speed * math.sin(beta))
     found, index = [], 0

@@ -1,4 +1,4 @@
-"""Odometry of another simulator on our motions, and the output of TruthAdapter for it."""
+"""Odometry of another simulator on motions of ins_sim, and the output of TruthAdapter for it."""
 
 import numpy as np
 
@@ -27,8 +27,8 @@ class OtherSimulator:
     """
     A motion as the odometry of another simulator.
 
-    name: of MOTIONS; rate_hz, length_s: of the samples, t_ns (n,), of which r (n, 3), q (n, 4),
-    v and w (n, 3) are exact until a method spoils them.
+    name: key of MOTIONS; rate_hz, length_s: rate and duration of the samples. r (n, 3), q (n, 4),
+    v and w (n, 3) at t_ns (n,) are exact until a method adds errors.
     """
 
     def __init__(self, name, rate_hz, length_s, seed=0):
@@ -55,7 +55,7 @@ class OtherSimulator:
         return self
 
     def averaged_twist(self, steps=10, step_ns=1_000_000):
-        """Give the twist of gz-sim: the mean of the last steps of the simulation."""
+        """Set the twist as gz-sim computes it: the mean of the last steps of the simulation."""
         v = w = 0.0
         for k in range(steps):
             r0, q0, _, _ = self._odometry(self.t_ns - (k + 1) * step_ns)
@@ -67,13 +67,13 @@ class OtherSimulator:
         return self
 
     def parent_twist(self):
-        """Give the twist in the axes of the parent."""
+        """Set the twist in the axes of the parent frame."""
         self.v, self.w = (np.stack(quaternion.rotate(self.q.T, tuple(x.T)), axis=-1)
                           for x in (self.v, self.w))
         return self
 
     def noisy(self, metres=0.0, degrees=0.0, metres_s=0.0, degrees_s=0.0):
-        """Add white noise, by axis, to position, attitude, velocity and rate."""
+        """Add white noise to each axis of position, attitude, velocity and rate."""
         turn = tuple(self._normal(0.5 * np.radians(degrees)).T)
         q = quaternion.multiply(self.q.T, (*turn, np.ones(len(self.q))))
         self.q = np.stack(q, axis=-1) / np.sqrt(sum(x * x for x in q))[:, None]
@@ -95,12 +95,12 @@ class OtherSimulator:
         return self
 
     def samples(self):
-        """Return the arguments of TruthAdapter.push, one by one."""
+        """Yield the arguments of TruthAdapter.push for each sample."""
         return zip(self.t_ns.tolist(), *(map(tuple, x.tolist())
                                          for x in (self.r, self.q, self.v, self.w)))
 
     def adapted(self, **values):
-        """Return the TruthAdapter that has taken all samples, and its AdaptedTruth, a list."""
+        """Return a TruthAdapter after all samples, and the list of its AdaptedTruth."""
         adapter = TruthAdapter(build(TruthAdapterSettings, {**PLACE, **{
             key.replace('__', '.'): value for key, value in values.items()}}))
         return adapter, [truth for sample in self.samples() for truth in adapter.push(*sample)]
@@ -108,9 +108,9 @@ class OtherSimulator:
 
 class AdaptedRun:
     """
-    The readings of an IMU at 100 Hz on adapted truth, beside those of the closed form.
+    Readings of an IMU at 100 Hz on adapted truth, compared with those on the closed form.
 
-    f, w: rms of the vector that they differ by, but for the first reading, which covers nothing.
+    f, w: rms of the difference vector; the first reading covers no interval and is left out.
     """
 
     def __init__(self, simulator, truths):
@@ -128,11 +128,13 @@ class AdaptedRun:
             (self.imu.f, exact.f), (self.imu.omega, exact.omega)))
 
     def at(self, t_ns):
-        """Return the adapted truth at instants, as a motion does."""
+        """Return the adapted truth at instants, like a motion."""
         return self.truth[np.searchsorted(self.truth.t_ns, t_ns)]
 
     def closures(self):
-        """Return the largest distances of the strapdown from adapted and from exact truth, m."""
+        """
+        Return the greatest distance of the strapdown from the adapted and from the exact truth, m.
+        """
         most, settings = [0.0, 0.0], self._simulator.settings.strapdown
         for truth, states, _ in navigate_blocks(settings, self, [self.imu]):
             for k, true in enumerate((truth, self._simulator.motion.at(truth.t_ns))):
@@ -142,7 +144,7 @@ class AdaptedRun:
         return tuple(most)
 
     def farthest(self):
-        """Return the largest distance of the adapted from the exact path, m."""
+        """Return the greatest distance of the adapted from the exact path, m."""
         frame, true = self._simulator._frame, self._simulator.motion.at(self.truth.t_ns)
         r = frame.pose(true.lat, true.lon, true.height, true.v_n, true.q_nb)[0]
         return float(np.sqrt(np.sum((self.r_m - r) ** 2, axis=1)).max())

@@ -6,17 +6,17 @@ import re
 from .places import ROOT
 
 README = ROOT / 'README.md'
-# Without the pages that the code generates.
+# Without pages that are generated from the code.
 PAGES = sorted([README, *(page for page in (ROOT / 'docs').rglob('*.md')
                           if 'generated' not in page.parts)])
 SHELL = ('sh', 'bash', 'console')
-# A comment on the line above a fence says why a block is not run.
+# A comment on the line above a fence states why a block is not executed.
 NOT_RUN = re.compile(r'<!-- not run: (\S.*\S) -->')
 
 
 @dataclass(frozen=True)
 class Block:
-    """A code block: its language, its text, and the reason why it is not run, or ''."""
+    """A code block: its language, its text, and the reason why it is not executed, or ''."""
 
     language: str
     text: str
@@ -24,7 +24,7 @@ class Block:
 
 
 def page_id(page):
-    """Return the name of a page from the root, for the names of tests."""
+    """Return the path of a page from the root, used as test id."""
     return str(page.relative_to(ROOT))
 
 
@@ -32,7 +32,8 @@ def split(text):
     """
     Return the blocks of a page and its other lines, without display formulas.
 
-    A fence without language is a shell block; so is an indented line that begins with a command.
+    A fence without language is a shell block, and so is an indented line that begins with a
+    command.
     """
     blocks, prose, fence, before = [], [], None, ''
     for line in re.sub(r'^ *\$\$.*?\$\$', '', text, flags=re.DOTALL | re.MULTILINE).splitlines():
@@ -60,7 +61,7 @@ def _dedent(lines):
 
 
 def _joined(blocks):
-    """Join indented lines that follow each other, for commands over several lines."""
+    """Join consecutive indented lines, for commands over several lines."""
     joined = []
     for block in blocks:
         if joined and block.language == joined[-1].language == 'indented':
@@ -71,7 +72,7 @@ def _joined(blocks):
 
 
 def commands(block):
-    """Return the commands of a shell or indented block, one a line, without comments."""
+    """Return the commands of a shell or indented block, one per line, without comments."""
     if block.language not in (*SHELL, 'indented'):
         return []
     lines = re.sub(r'\\\n\s*', ' ', block.text).splitlines()
@@ -80,7 +81,7 @@ def commands(block):
 
 
 def anchors(text):
-    """Return the anchors of the headings of a page, as GitHub and MyST make them."""
+    """Return the anchors of the headings of a page, as GitHub and MyST generate them."""
     headings = re.findall(r'^#{1,3} (.+?)\s*$', re.sub(r'```.*?```', '', text, flags=re.DOTALL),
                           re.MULTILINE)
     return {re.sub(r'[^\w\- ]', '', heading.replace('`', '').lower()).replace(' ', '-')

@@ -1,4 +1,4 @@
-"""A pair of tuned gyros with its errors, and its steady output."""
+"""A pair of dynamically tuned gyros with its errors, and its steady output."""
 
 from support.studies import settings
 
@@ -8,5 +8,5 @@ DTG = {'gyro.model': 'dtg', 'output': 'integrated', 'input': 'integrated'}
 
 
 def instrument(values=(), **more):
-    """Return the PairInstrument of settings at 100 Hz."""
+    """Return the PairInstrument built from settings at 100 Hz."""
     return PairInstrument(settings({**DTG, **dict(values)}, **more).imu_sensor)

@@ -16,7 +16,7 @@ HEADER = ','.join(COLUMNS)
 
 def write(path, t, lat=55.0, lon=37.0, height=100.0, roll=0.0, pitch=0.0, heading=0.0,
           digits='.17g'):
-    """Write columns in the file's units; scalars are repeated; return the path as text."""
+    """Write columns in the units of the file; scalars are repeated; return the path as text."""
     columns = np.broadcast_arrays(t, lat, lon, height, roll, pitch, heading)
     lines = [','.join(COLUMNS)]
     lines += [','.join([*(format(x, digits) for x in row), '', '', '']) for row in zip(*columns)]
@@ -30,14 +30,14 @@ def load(path, rotation=True, **keys):
 
 
 def recorder_angles(q):
-    """Return roll, pitch, heading, deg, of q_nb (n, 4): independent of the package."""
+    """Return roll, pitch, heading, deg, of q_nb (n, 4), computed independently of the package."""
     c = Rotation.from_quat(q).as_matrix()
     return np.degrees([np.arctan2(c[:, 2, 1], c[:, 2, 2]), np.arcsin(c[:, 2, 0]),
                        np.arctan2(c[:, 0, 0], c[:, 1, 0])])
 
 
 def record(path, motion, rate_hz, duration_s):
-    """Write a closed-form motion as its recorder would have, unrounded."""
+    """Write a closed-form motion as its recorder would, without rounding."""
     t_ns = np.arange(round(duration_s * rate_hz) + 1) * round(1e9 / rate_hz)
     x = motion.at(t_ns)
     roll, pitch, heading = recorder_angles(x.q_nb)
@@ -62,7 +62,7 @@ def save(path, table, header=HEADER):
 
 
 def refusal(path, **keys):
-    """Return the sentence with which the file is refused."""
+    """Return the message with which the file is refused."""
     with pytest.raises((ValueError, FileNotFoundError)) as caught:
         RecordedMotion(read_poses(path), Recording(path=str(path), **keys), Earth())
     sentence = str(caught.value)

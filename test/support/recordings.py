@@ -1,4 +1,4 @@
-"""Bags for the tests of navigate, written by rosbags and not by the package's own writers."""
+"""Bags for the tests of navigate, written by rosbags instead of the package's own writers."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def quaternion(q):
 
 
 def imu_messages(t_ns, omega, f, frame='imu_link', q=None, stamps=None):
-    """Return [(log time, Imu)]; without q the orientation is unknown (REP-145)."""
+    """Return [(log time, Imu)]; without q the orientation is marked as unknown (REP-145)."""
     out = []
     for k, t in enumerate(t_ns):
         unknown = np.zeros(9)
@@ -48,7 +48,7 @@ def imu_messages(t_ns, omega, f, frame='imu_link', q=None, stamps=None):
 
 
 def fix_messages(t_ns, lat, lon, height, status=0):
-    """Return [(log time, NavSatFix)] of rad and m."""
+    """Return [(log time, NavSatFix)] from latitude and longitude in rad, height in m."""
     out = []
     for t, a, b, c in zip(t_ns, lat, lon, height):
         out.append((int(t), message(
@@ -96,7 +96,7 @@ def odometry_messages(t_ns, r, q, v_b):
 
 
 def tf_messages(t_ns, transforms):
-    """Return [(log time, TFMessage)] of {(parent, child): q}."""
+    """Return [(log time, TFMessage)] from {(parent, child): q}."""
     return [(int(t_ns), message('tf2_msgs/msg/TFMessage', transforms=[message(
         'geometry_msgs/msg/TransformStamped', header=header(t_ns, parent), child_frame_id=child,
         transform=message('geometry_msgs/msg/Transform', translation=vector((0.1, 0.0, 0.2)),
@@ -105,7 +105,7 @@ def tf_messages(t_ns, transforms):
 
 
 def write_bag(path, topics, storage='mcap'):
-    """Write a bag of {(topic, type name): [(log time, message)]} and return its path."""
+    """Write a bag from {(topic, type name): [(log time, message)]} and return its path."""
     with Writer(path, version=9, storage_plugin=StoragePlugin[storage.upper()]) as bag:
         for (name, type_name), messages in topics.items():
             connection = bag.add_connection(name, type_name, typestore=STORE)

@@ -1,4 +1,4 @@
-"""Truth and solutions published by hand, for the tests of nodes that follow them."""
+"""Truth and solutions published by hand, for the tests of nodes that subscribe to them."""
 
 from dataclasses import replace
 import time
@@ -22,12 +22,13 @@ ODOMETRY_RUNS = ((0, 3), (3, 7), (43, 46), (46, 49))
 
 
 class Stream:
-    """A node by itself, what it says on some topics, and the truth of a motion at 100 Hz."""
+    """A node under test, its messages on some topics, and the truth of a motion at 100 Hz."""
 
     def __init__(self, domain, folder, heard, motion=None, published=(topics.TRUTH_ODOMETRY,)):
         from ins_sim.ros.transport.qos import make_publisher
         self.chain = Chain(domain, folder)
-        # a node that knows the reader of its answers, made last, knows all readers
+        # The reader of the answers is created last: a node that has discovered it knows all
+        # readers.
         self.listener = Listener(domain, (*heard, ACK))
         self.heard, self.raw = self.listener.heard, self.listener.raw
         self.seen = self.listener.diagnostics()
@@ -42,7 +43,7 @@ class Stream:
         return self._motion.at(np.asarray(stamps_ns, dtype=np.int64))
 
     def blocks(self, stamps_ns):
-        """Return {Topic: values} of the truth at stamps, and of an IMU that reads it."""
+        """Return {Topic: values} of the truth at stamps, and of an IMU that senses it."""
         truth = self.truth(stamps_ns)
         return {**truth_blocks(self.frame, truth), topics.IMU_RAW: np.concatenate(
             [truth.omega_ib_b, truth.f_ib_b], axis=1)}
@@ -55,7 +56,9 @@ class Stream:
             stamps_ns, rows)]
 
     def send(self, stamps_ns, topic=topics.TRUTH_ODOMETRY, values=None, poison=None):
-        """Publish values (by default the truth) at stamps; poison: the row that holds a NaN."""
+        """
+        Publish values, by default the truth, at stamps; poison: row whose last value becomes NaN.
+        """
         writer, publish = self._out[topic]
         values = self.blocks(stamps_ns)[topic] if values is None else values
         if poison is not None:
@@ -69,7 +72,9 @@ class Stream:
         self._out[topic][1](data)
 
     def begin(self, process, first=0):
-        """Send the first sample until it is acknowledged, so that all have found each other."""
+        """
+        Send the first sample until it is acknowledged, which shows that discovery is complete.
+        """
         end = time.monotonic() + GUARD_S
         while not self.heard[ACK.name]:
             assert time.monotonic() < end and process.poll() is None, self.chain.text(process)
@@ -85,17 +90,19 @@ class Stream:
         self.listener.poll_until(lambda: t_ns in self.heard[ACK.name], timeout_s)
 
     def wait_counts(self, counts):
-        """Wait until so many stamps are heard of each Topic: none comes with another."""
+        """Wait until each Topic has the given number of stamps; they do not arrive together."""
         self.listener.poll_until(lambda: all(
             len(self.heard[topic.name]) >= count for topic, count in counts.items()))
 
     def wait_diagnosis(self, part, timeout_s=GUARD_S):
-        """Wait until /diagnostics says this."""
+        """Wait until a message on /diagnostics contains this text."""
         self.listener.spin_until(lambda: any(part in message for _, _, message in self.seen),
                                  timeout_s)
 
     def close(self):
-        """End everything; every node ends with code 0 on Ctrl-C and without a traceback."""
+        """
+        End all nodes on Ctrl-C, check that none printed a traceback, and return their exit codes.
+        """
         codes = self.chain.end()
         self.listener.close()
         for process in self.chain.processes.values():
@@ -104,7 +111,9 @@ class Stream:
 
 
 def offline_fixes(stream, stamps_ns, values, with_ins=True):
-    """Return the VelocityFixes of the core from the same odometry, the INS being the truth."""
+    """
+    Return the VelocityFixes computed offline from the same odometry, the truth serving as the INS.
+    """
     meter, fixes = VelocityMeter(build(VelocityMeterSettings, values)), []
     for t_ns, r_m, q_mb, v_b, _ in stream.odometry(stamps_ns):
         fixes += meter.push_truth(t_ns, v_b, stream.frame.geodetic_one(r_m, q_mb, v_b)[2])

@@ -1,4 +1,4 @@
-"""Settings of studies that tests share, and their runs."""
+"""Settings of studies shared by tests, and their runs."""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import lru_cache
@@ -24,7 +24,7 @@ DEG_PER_HOUR = 206264.806
 
 MOTION_1 = {'motion.kind': 'rocking', 'motion.psi_deg': 45.0, 'motion.theta_deg': 0.0,
             'gyro.delay_us.x': 1.0}
-# Shipped files of motion 2 with its delay, and how the command line names them.
+# Shipped files of motion 2 with its delay, and their options on the command line.
 LATE_MOTION_2 = ['motion_2', 'delay_y_1us']
 LATE_MOTION_2_WORDS = [word for name in LATE_MOTION_2 for word in ('--params-file', name)]
 MOTION_2 = {'motion.kind': 'two_axis', 'gyro.delay_us.y': 1.0}
@@ -33,7 +33,7 @@ FLIGHT = {'datum.latitude_deg': 55.0, 'datum.longitude_deg': 37.0, 'gyro.delay_u
 
 
 def settings(values=None, **more):
-    """Return Settings of {dotted name: value}, over motion 2; __ in keywords are dots."""
+    """Return Settings from {dotted name: value}, based on motion 2; __ in keywords are dots."""
     values = {'source': 'motion', 'motion.kind': 'two_axis', **(values or {}),
               **{k.replace('__', '.'): v for k, v in more.items()}}
     known = {node: flatten(cls) for node, cls in NODES.items()}
@@ -45,7 +45,7 @@ def settings(values=None, **more):
 
 
 def streamed(s):
-    """Return the ImuSamples of a run through the stream, and its truth as push takes it."""
+    """Return the ImuSamples of a run through the stream, and its truth as arguments of push."""
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)
     expected = ImuSamples.concatenate(imu_blocks(s, motion))
@@ -62,16 +62,16 @@ def run_offline(chosen, twin=True):
 
 
 def prediction_of(chosen):
-    """Return the Prediction of SimulationSettings."""
+    """Return the Prediction for SimulationSettings."""
     return predict(chosen, read_motion(chosen.motion_generator))
 
 
 def study(values, twin=True):
     """
-    Return errors and twin errors (or None) of the run of {dotted name: value}.
+    Return errors and twin errors (or None) of the run with {dotted name: value}.
 
-    The newest few are kept: tests that look at the same run, which carry the same xdist_group,
-    compute it once.
+    The last few results are cached: tests of one run have the same xdist_group and compute it
+    once.
     """
     return _study(tuple(sorted(values.items())), twin)
 
@@ -85,13 +85,13 @@ def _study(values, twin):
 
 def spread(function, *arguments):
     """
-    Return what a function gives for each of the arguments, computed on all cores.
+    Return the values of a function for each argument, computed on all cores.
 
-    A worker of pytest-xdist has its neighbours on the other cores and computes one by one.
+    A worker of pytest-xdist computes them one by one, because other workers use the other cores.
     """
     if 'PYTEST_XDIST_WORKER' in os.environ:
         return list(map(function, *arguments))
-    # Forked: a function of a test module has no name that a new process could import.
+    # Forked processes, because a new process could not import the function of a test module.
     with ProcessPoolExecutor(mp_context=multiprocessing.get_context('fork')) as pool:
         return list(pool.map(function, *arguments))
 

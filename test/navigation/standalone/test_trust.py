@@ -1,4 +1,4 @@
-"""The stated uncertainty of a self-alignment against its true error (section 5 of the spec)."""
+"""The stated uncertainty of a self-alignment compared with its true error."""
 
 import math
 
@@ -15,7 +15,7 @@ from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.simulation.inertial import imu_blocks
 from ins_sim.settings.recorded_imu import AlignmentSettings
 
-# Turn-on bias of the gyros of the presets, deg/h.
+# Turn-on bias of the gyro presets, deg/h.
 BIAS_DEG_H = {'imu_tactical_fog': 1.0, 'imu_tactical_mems': 10.0, 'imu_navigation_rlg': 0.0035}
 
 
@@ -44,9 +44,9 @@ def test_no_draw_is_trusted_that_is_out_by_three_sigma(preset, capsys):
     """
     No trusted heading is wrong by more than three sigma, in 24 draws of 30 s at rest.
 
-    With the default sigma of the bias, and with the true one, none is trusted, because the bias
-    alone causes 6.8 deg and more. If headings with a sigma of up to 69 deg are accepted, some are
-    trusted with the true sigma; of these, too, none is wrong by more than three sigma.
+    With the default sigma of the bias, and with the true one, no heading is trusted, because the
+    bias alone causes 6.8 deg and more. If headings with a sigma of up to 69 deg are accepted, some
+    are trusted with the true sigma; of these, too, none is wrong by more than three sigma.
     """
     true_sigma, trusted = BIAS_DEG_H[preset], dict.fromkeys(('default', 'true', 'wide'), 0)
     for seed in range(24):
@@ -76,12 +76,12 @@ def test_the_sigma_is_noise_and_bias_together():
 
 def test_what_two_instruments_reach(capsys):
     """
-    The heading error of two instruments over 8 draws is as specified.
+    The heading error of a navigation-grade RLG and a tactical FOG over 8 draws is as specified.
 
-    A navigation-grade RLG reaches 1 deg after 5 s and 0.1 deg after 60 s (here with the bias of
-    its data sheet, and to the 15 % of an estimate from 15 frequencies). The noise of a tactical
-    FOG gives less than 1 deg after 25 s, and its bias of 1 deg/h leaves 6.8 deg at latitude 55.75
-    deg. The errors of the RLG are within three of its sigmas.
+    The RLG reaches 1 deg after 5 s and 0.1 deg after 60 s (here with the bias of its data sheet,
+    and to the 15 % of an estimate from 15 frequencies). The noise of the FOG gives less than 1 deg
+    after 25 s, and its bias of 1 deg/h leaves 6.8 deg at latitude 55.75 deg. The errors of the RLG
+    are within three of its sigmas.
     """
     rows = {}
     for preset, lengths in (('imu_navigation_rlg', (5.0, 60.0)), ('imu_tactical_fog', (25.0,))):

@@ -1,4 +1,4 @@
-"""Inputs that allow no start, and headings from other sources: one message each."""
+"""Input that prevents a start, and headings from other sources: one message each."""
 
 from dataclasses import replace
 import math
@@ -12,7 +12,7 @@ from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.earth.atmosphere import pressure, pressure_height
 from ins_sim.core.navigation.errors import position_error
 
-# Rest for 8 s is sufficient.
+# A rest of 8 s is sufficient.
 SHORT = {'alignment.longest_s': 8.0, 'alignment.shortest_s': 5.0}
 GIVEN = {**SHORT, 'initial.heading': 'given', 'initial.heading_deg': math.degrees(1.2)}
 
@@ -23,7 +23,7 @@ def headings(said):
 
 
 def test_alignment_on_the_move_is_never_trusted():
-    """A shaking vehicle has no standstill; a steadily moving one is found out by its fixes."""
+    """A shaking vehicle has no standstill; steady motion is recognised by its fixes."""
     imu, fixes = vehicle(length_s=40.0, rest_s=40.0)
     rng = np.random.default_rng(2)
     shaken = replace(imu, f=imu.f + 0.5 * rng.standard_normal((len(imu), 3)))
@@ -35,7 +35,7 @@ def test_alignment_on_the_move_is_never_trusted():
 
 
 def test_a_standstill_that_is_cut_short_begins_anew():
-    """A standstill of three seconds is too short; the next one is used."""
+    """A standstill of 3 s is too short; the next one is used."""
     imu, fixes = vehicle(length_s=60.0, rest_s=60.0)
     f = imu.f.copy()
     f[160:180, 0] += 2.0
@@ -49,7 +49,7 @@ def test_a_standstill_that_is_cut_short_begins_anew():
     (1000.0 / 9.80665, 'is it in mg?'), (0.0, 'was gravity removed?')])
 @pytest.mark.parametrize('source', ['alignment', 'given'])
 def test_another_unit_of_the_accelerometers(scale, part, source):
-    """Accelerometers in another unit are reported, and navigation does not start."""
+    """Specific force in another unit is reported, and navigation does not start."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0, noise=(2e-4, 1e-4))
     values = SHORT if source == 'alignment' else {'initial.source': 'given'}
     said = play(stage_of(values), replace(imu, f=scale * imu.f), fixes)
@@ -57,7 +57,7 @@ def test_another_unit_of_the_accelerometers(scale, part, source):
 
 
 def test_upside_down():
-    """An IMU upside down is navigated as it is, and the message says what to set."""
+    """An IMU mounted upside down is navigated as it is; a message names mounting.rpy_deg."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     turn = quaternion.exponential((math.pi, 0.0, 0.0))
     said = play(stage_of(GIVEN), imu.turned(turn), fixes)
@@ -78,7 +78,7 @@ def test_zeros_in_turns():
 
 
 def test_readings_that_are_no_numbers():
-    """Readings with NaN are dropped and counted."""
+    """Ten readings that are not finite are dropped and counted."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     f = imu.f.copy()
     f[100:110] = np.inf
@@ -88,7 +88,7 @@ def test_readings_that_are_no_numbers():
 
 
 def test_a_long_gap_begins_anew():
-    """After a long gap a new standstill is needed; a given state is no longer valid."""
+    """After a long gap a new standstill is needed; a given initial state is no longer valid."""
     imu, fixes = vehicle(length_s=60.0, rest_s=60.0)
     kept = np.ones(len(imu), dtype=bool)
     kept[1000:1200] = False
@@ -102,7 +102,7 @@ def test_a_long_gap_begins_anew():
 
 
 def test_a_clock_that_jumps_back():
-    """A clock that jumps back is recognised after ten rising samples; alignment starts again."""
+    """A clock that jumps back is recognised after ten increasing stamps; alignment restarts."""
     imu, fixes = vehicle(length_s=30.0, rest_s=30.0)
     stage = play(stage_of(GIVEN), imu, fixes)
     said = play(stage, replace(imu, t_ns=imu.t_ns - 10**12),
@@ -122,7 +122,7 @@ def test_a_fix_of_another_clock():
 
 
 def test_a_solution_that_runs_away():
-    """A solution that diverges is stopped once, with a message."""
+    """A solution that diverges is stopped with one message."""
     imu, _ = vehicle(length_s=10.0, rest_s=10.0)
     said = play(stage_of({'initial.source': 'given', 'initial.height_m': 9.9e5,
                           'initial.velocity_m_s': (0.0, 0.0, 9e3)}), imu)
@@ -132,7 +132,7 @@ def test_a_solution_that_runs_away():
 @pytest.mark.parametrize('declination', [0.0, 0.12])
 @pytest.mark.parametrize('turn', [(0.0, 0.0, 0.0), (0.3, -0.2, 0.0)])
 def test_a_heading_by_the_magnetic_field(declination, turn):
-    """The magnetic heading is free of dip and roll, and corrected for the declination."""
+    """The magnetic heading is independent of dip and roll, and corrected for the declination."""
     imu, fixes = vehicle(length_s=20.0, rest_s=20.0, noise=(2e-4, 1e-4))
     turn = quaternion.exponential(turn)
     imu = imu.turned(quaternion.conjugate(turn))
@@ -154,7 +154,7 @@ def test_a_heading_by_the_magnetic_field(declination, turn):
 
 
 def test_a_field_that_is_not_the_earths():
-    """With a field that is not the Earth's, only levelling is done; a warning says why."""
+    """If the field is not that of the Earth the IMU is only levelled; a warning states why."""
     imu, fixes = vehicle(length_s=20.0, rest_s=20.0)
     said = stage_of(SHORT | {'initial.heading': 'magnetometer'})
     for t_ns in imu.t_ns[::5].tolist():
@@ -165,20 +165,20 @@ def test_a_field_that_is_not_the_earths():
 
 
 def test_a_start_on_the_move_by_the_course_of_fixes():
-    """A start on the move has position, velocity and heading of the car after 20 m within 5 s."""
+    """After 20 m a start in motion has the position, velocity and heading of the car."""
     imu, fixes = vehicle(length_s=40.0, rest_s=5.0)
     said = play(stage_of({'initial.source': 'fix', 'initial.heading': 'course'}), imu, fixes)
     t_ns, (lat, lon, height, v, _) = said.solved[0][:2]
     assert abs(headings(said) - 1.2) < 1e-6 and said.has('start on the move')
     after = next(f for f in fixes if f.t_ns > t_ns)
-    # At 1 m/s^2 the next second is 1 m longer than the last one.
+    # At 1 m/s^2 the vehicle moves 1 m more in the next second than in the last one.
     way = math.hypot(*position_error(lat, lon, height, *after.place)[:2])
     assert way < math.hypot(*v[:2]) + 1.0
     assert abs(math.atan2(v[0], v[1]) - 1.2) < 1e-6 and math.hypot(*v) > 4.0
 
 
 def test_a_late_course_gives_way_to_what_there_is():
-    """If the fixes never move 20 m, the search for the course ends and only levelling is done."""
+    """If the fixes do not move 20 m, the search for a course ends and the IMU is only levelled."""
     imu, fixes = vehicle(length_s=40.0, rest_s=40.0)
     said = play(stage_of(SHORT | {'alignment.course_search_s': 10.0}), imu, fixes)
     assert said.has('moves 0 m on one course within 10 s') and not said.stage.located
@@ -186,7 +186,7 @@ def test_a_late_course_gives_way_to_what_there_is():
 
 
 def test_pressure_and_height_are_inverse():
-    """Pressure and height are inverse functions in every layer and beyond the last one."""
+    """Pressure and height are inverse functions in every layer and above the highest one."""
     for height in (-400.0, 0.0, 1000.0, 11000.0, 15000.0, 25000.0, 40000.0, 50000.0, 60000.0,
                    80000.0, 90000.0):
         assert abs(pressure_height(pressure(height)) - height) < 1e-6

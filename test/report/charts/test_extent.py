@@ -15,7 +15,7 @@ def panel(*marks, **options):
 
 
 def test_all_values_are_shown():
-    """Curves fill the width; levels count; values that are not finite are ignored."""
+    """Curves fill the width, levels are included, and values that are not finite are ignored."""
     one = panel(Curve(X, np.array([1.0, np.nan, 3.0])), Level(y=-5.0))
     low, high = vertical_range(one)
     assert low < -5.0 and high > 3.0 and high - low < 1.1 * 8.0
@@ -24,7 +24,7 @@ def test_all_values_are_shown():
 
 
 def test_given_ranges_are_kept():
-    """Given ranges are kept for any data."""
+    """Given ranges are used for any data."""
     one = panel(Curve(X, X), x_range=(0.5, 1.0), y_range=(2.0, 3.0))
     assert horizontal_range((one,)) == (0.5, 1.0) and vertical_range(one) == (2.0, 3.0)
 
@@ -45,13 +45,13 @@ def test_equal_axes_have_one_scale_and_show_all(shape):
 
 
 def test_marks_take_colours_in_turn():
-    """A colour of None is the next one of the cycle; a given colour is kept."""
+    """A mark without a colour gets the next one of the cycle; a given colour is kept."""
     marks = coloured([Curve(X, X), Curve(X, X, colour='#123456'), Curve(X, X), Level(y=0.0)])
     assert [mark.colour for mark in marks] == [CYCLE[0], '#123456', CYCLE[1], '#000000']
 
 
 def test_maps_of_both_signs_are_white_at_zero():
-    """The scale of a map with both signs is symmetric, otherwise from smallest to largest."""
+    """The colour scale of a map with both signs is symmetric; otherwise it covers the values."""
     def of(*values):
         return map_colours(Map(X, X[:1], np.array([values]), 'm').values)
 

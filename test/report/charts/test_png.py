@@ -1,4 +1,4 @@
-"""Charts as PNG: of a known size, for any text, with the same bytes each time."""
+"""Charts as PNG: of a given size, for any text, with the same bytes each time."""
 
 from io import BytesIO
 import subprocess
@@ -15,7 +15,7 @@ from support.reports.charts import every_mark
 
 @pytest.mark.parametrize('chart', every_mark(), ids=lambda chart: chart.name)
 def test_every_mark_is_drawn(chart, tmp_path):
-    """A picture of ten inches with more than a frame; drawn twice, the bytes are equal."""
+    """Every mark is drawn in a picture of ten inches; drawing twice gives equal bytes."""
     path = save_chart(tmp_path, chart)
     assert path == tmp_path / f'{chart.name}.png'
     pixels = imread(path)
@@ -26,7 +26,7 @@ def test_every_mark_is_drawn(chart, tmp_path):
 
 @pytest.mark.parametrize('words', ['d\udce9sk.csv', 'a$b_\\frac$c', '$x^$', '<b>&', 'x' * 300])
 def test_texts_of_any_kind_are_drawn(words):
-    """File names that are not UTF-8, text that looks like a formula, and long text are drawn."""
+    """Names that are not UTF-8, text that looks like a formula, and long text are drawn."""
     curve = Curve(np.arange(3.0), np.arange(3.0), words)
     chart = Chart('x', words, (Panel((curve,), words, words, title=words, note=words),),
                   caption=words)
@@ -36,7 +36,7 @@ def test_texts_of_any_kind_are_drawn(words):
 @pytest.mark.parametrize('values', [[], [np.nan] * 3, [0.0] * 3, [-1.0, -2.0, -3.0]])
 @pytest.mark.parametrize('axis', ['linear', LOG])
 def test_a_curve_without_values_is_an_empty_panel(values, axis):
-    """No values, NaN, a constant, and negative values on a logarithmic axis give a panel."""
+    """Without finite values, or with negative ones on a logarithmic axis, a panel is drawn."""
     curve = Curve(np.arange(len(values)) + 1.0, np.array(values), 'curve')
     chart_png(Chart('x', 'x', (Panel((curve,), 'x', 'y', x_scale=axis, y_scale=axis),)))
 
@@ -50,9 +50,7 @@ def test_units_fit_the_size(units, largest, unit):
 
 
 def test_the_backend_of_the_program_stays():
-    """
-    Importing the reports does not change pyplot's backend, so that a notebook keeps inline plots.
-    """
+    """Importing the reports keeps the backend of pyplot, so that a notebook keeps inline plots."""
     code = ('import matplotlib\n'
             'matplotlib.use("svg")\n'
             'import ins_sim.report.runs.page, ins_sim.report.navigation\n'

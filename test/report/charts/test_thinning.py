@@ -1,4 +1,4 @@
-"""Thinning of a curve leaves out nothing that could be seen."""
+"""Thinning of a curve leaves out nothing that is visible."""
 
 from hypothesis import given, settings, strategies as st
 from ins_sim.report.charts.thinning import kept_points, STRETCHES, thinned_curve
@@ -8,7 +8,7 @@ import numpy as np
 @settings(max_examples=40)
 @given(st.integers(0, 30000), st.integers(0, 2 ** 32 - 1), st.booleans())
 def test_no_extreme_is_lost(count, seed, gaps):
-    """For each stretch first, last, smallest and largest point stay: at most seven, in order."""
+    """Each stretch keeps its first, last, smallest and largest point: at most seven, in order."""
     rng = np.random.default_rng(seed)
     x, y = np.arange(count, dtype=float), rng.standard_t(1, count)
     if gaps and count:
@@ -23,12 +23,12 @@ def test_no_extreme_is_lost(count, seed, gaps):
         finite = part[np.isfinite(part)]
         if finite.size:
             assert np.nanmin(shown) == finite.min() and np.nanmax(shown) == finite.max()
-        # A gap stays a gap.
+        # A gap remains a gap.
         assert np.isnan(part).any() == np.isnan(shown).any()
 
 
 def test_a_spike_of_one_sample_is_drawn():
-    """A wrong sample in an hour at 100 Hz stays; taking every 90th point would miss it."""
+    """One wrong sample in an hour at 100 Hz is kept; taking every 90th point would miss it."""
     y = np.zeros(360001)
     y[123457] = 1.0
     x = np.arange(len(y)) * 0.01

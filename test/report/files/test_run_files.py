@@ -1,6 +1,4 @@
-"""
-The files of a run: thinned arrays, CSV tables and trajectories agree with the arrays to the bit.
-"""
+"""The files of a run: thinned arrays, CSV tables and trajectories have the bits of the arrays."""
 
 import csv
 
@@ -43,7 +41,7 @@ def table(path):
 
 
 def check_table(path, history):
-    """Compare a CSV file with a History: names, and bits."""
+    """Compare names and bits of a CSV file with a History."""
     found, expected = table(path), history_columns(history)
     assert list(found) == ['t_ns', *expected]
     assert [int(text) for text in found['t_ns']] == history.t_ns.tolist()
@@ -65,7 +63,7 @@ def check_trajectory(path, settings, history):
 
 
 def test_tables_and_trajectories_of_the_verb(run, tmp_path):
-    """simulate --csv --tum writes each record; without the options nothing is added."""
+    """simulate --csv --tum writes each record; without the options these files are absent."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '-o', str(tmp_path / 'plain')]) == 0
     assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--csv', '--tum', '-o',
                  str(tmp_path / 'run')]) == 0
@@ -82,7 +80,7 @@ def test_tables_and_trajectories_of_the_verb(run, tmp_path):
 
 @pytest.mark.filterwarnings("ignore:The 'float_precision' argument is deprecated")
 def test_a_dataframe_is_what_pandas_reads_from_the_table(run, tmp_path):
-    """Names, index and bits of a dataframe equal those that pandas reads from the table."""
+    """A dataframe has the names, index and bits that pandas reads from the CSV table."""
     pandas = pytest.importorskip('pandas', reason='pandas is not installed')
     run.save(tmp_path / 'run', csv=True)
     for name in RECORDS:
@@ -92,7 +90,7 @@ def test_a_dataframe_is_what_pandas_reads_from_the_table(run, tmp_path):
 
 
 def test_the_table_of_the_imu_is_navigated_as_it_is(run, tmp_path):
-    """navigate recognises the names, units and stamps of the table of the IMU."""
+    """navigate recognises the names, units and stamps of the CSV table of the IMU."""
     run.save(tmp_path / 'run', csv=True)
     read, notes = read_imu(tmp_path / 'run' / 'imu.csv')
     assert len(notes) == 1 and 't_s from t_ns times 1e-09' in notes[0]
@@ -102,7 +100,7 @@ def test_the_table_of_the_imu_is_navigated_as_it_is(run, tmp_path):
 
 
 def test_evo_reads_the_trajectories(run, tmp_path):
-    """The position error of evo equals ours at the stamps that it pairs."""
+    """The position error computed by evo equals ours at the stamps it matches."""
     file_interface = pytest.importorskip('evo.tools.file_interface',
                                          reason='evo is not installed (PyPI)')
     from support.bags.bag_tools import evo_position_rms
@@ -119,9 +117,7 @@ def test_evo_reads_the_trajectories(run, tmp_path):
 
 @pytest.mark.parametrize('thin', [1, 7, 200, 201, 10 ** 6])
 def test_every_nth_instant(run, thin, tmp_path):
-    """
-    Truth, solution, errors and twin are thinned, by the verb and by a run; the IMU is complete.
-    """
+    """Truth, solution, errors and twin are thinned by the verb and by a run; the IMU is not."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--csv', '--thin', str(thin), '-o',
                  str(tmp_path / 'verb')]) == 0
     run.save(tmp_path / 'api', thin=thin, csv=True, tum=True)
@@ -143,7 +139,7 @@ def test_every_nth_instant(run, thin, tmp_path):
 
 
 def test_what_is_left_out_is_said_once(tmp_path, capsys):
-    """Thinning is reported once with its count, and not at all if nothing is left out."""
+    """Thinning is reported once with its count, and not if nothing is left out."""
     for thin, sentence in ((1, None), (10, 'the files hold 21 of 201 output instants (thin 10)')):
         assert main(['simulate', *LATE_MOTION_2_WORDS, *SHORT, '--thin', str(thin), '--force',
                      '-o', str(tmp_path / 'run')]) == 0
@@ -161,14 +157,14 @@ def test_thin_is_a_whole_number(run, thin, tmp_path):
 
 
 def test_the_verb_refuses_thin_0_before_the_run(tmp_path, capsys):
-    """thin 0 is refused with exit code 2 before the run."""
+    """Option thin 0 is refused with exit code 2 before the run."""
     assert main(['simulate', *LATE_MOTION_2_WORDS, '--thin', '0', '-o', str(tmp_path / 'x')]) == 2
     assert 'thin is 0; expected a whole number of at least 1' in capsys.readouterr().err
     assert not (tmp_path / 'x').exists()
 
 
 def test_an_aided_run(aided, tmp_path):
-    """Records of the aided solution are written beside those of the strapdown, thinned alike."""
+    """Records of the aided solution are written like those of the strapdown, thinned alike."""
     aided.save(tmp_path / 'run', thin=5, csv=True, tum=True)
     for name in ('truth', 'states', 'errors'):
         check_table(tmp_path / 'run' / f'aided_{name}.csv', getattr(aided, name)[::5])
@@ -180,7 +176,7 @@ def test_an_aided_run(aided, tmp_path):
 
 
 def test_a_navigation(tmp_path):
-    """Verb and function write the solution and its errors; the map is at the start."""
+    """Verb and function write solution and errors; the map origin is at the start."""
     (tmp_path / 'track.csv').write_text('t_s,lat_deg,lon_deg,height_m\n' + ''.join(
         f'{k},45.0,0.0,0.0\n' for k in range(4)))
     record = record_at_rest(300)

@@ -13,7 +13,7 @@ GOOD = {'imu_t_ns': np.arange(50), 'imu_omega': np.ones((50, 3)), 'imu_f': np.on
 
 
 def saved(folder, save=np.savez, **changed):
-    """Write the arrays, some of them changed."""
+    """Write the arrays of a run, with some of them changed."""
     save(folder / 'run.npz', **{k: v for k, v in {**GOOD, **changed}.items() if v is not None})
     return folder
 
@@ -47,7 +47,7 @@ def test_other_arrays_are_named(changed, sentence, tmp_path, capsys):
 
 
 def test_sizes_that_the_file_does_not_have_are_not_allocated(tmp_path):
-    """A header of 2^40 rows, and a hundred megabytes of zeros in 100 kB, are refused."""
+    """A header of 2^40 rows, and 100 MB of zeros in 100 kB, are refused without allocation."""
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, {'descr': '<i8', 'fortran_order': False,
                                                   'shape': (2 ** 40,)})

@@ -38,7 +38,7 @@ def check(found, width, panels):
 
 @pytest.mark.parametrize('width, height', WINDOWS)
 def test_the_report_of_a_run_is_seen(run, width, height, tmp_path):
-    """Figures of both solutions and the track; panels with a common axis are zoomed together."""
+    """The report shows both solutions and the track; panels of one axis are zoomed together."""
     found = seen(run / REPORT, width, height, tmp_path, 'run')
     # Position, velocity, tilt, azimuth and NIS; position, attitude and drift; the track.
     check(found, width, 5 + 3 + 1)
@@ -52,7 +52,7 @@ def test_the_report_of_a_run_is_seen(run, width, height, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize('width, height', WINDOWS)
 def test_every_mark_is_seen(width, height, tmp_path):
-    """Every kind of mark of a chart is drawn, in one report."""
+    """Every kind of mark of a chart is drawn in one report."""
     charts = every_mark()
     write_page(tmp_path, Page(
         'Every mark', 'All is seen.', charts,
@@ -74,7 +74,7 @@ def test_without_bokeh_the_images_are_seen(tmp_path, without_bokeh):
 
 
 def test_a_missing_browser_is_a_failure_in_ci_alone(monkeypatch):
-    """Outside of CI the test is skipped and states what it looked for."""
+    """Without a browser the test is skipped with what it looked for, and in CI it fails."""
     monkeypatch.setattr('support.reports.browser.NAMES', ('no-such-browser',))
     for value, outcome in (('true', pytest.fail.Exception), ('', pytest.skip.Exception)):
         monkeypatch.setenv('CI', value)

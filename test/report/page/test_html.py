@@ -1,4 +1,4 @@
-"""The page of a report: complete, escaped, reproducible bytes, and of limited size."""
+"""The HTML page of a report is complete, escaped, reproducible, and limited in size."""
 
 from html.parser import HTMLParser
 import re
@@ -82,7 +82,7 @@ def test_texts_are_shown_as_they_are(tmp_path):
 
 
 def test_the_page_says_what_was_simulated(tmp_path):
-    """Changed settings, seed, versions, digest, and links to the files beside it are shown."""
+    """The page shows changed settings, seed, versions, digest, and links to its files."""
     outline = Outline(written(tmp_path, EVERY))
     read = ''.join(outline.texts)
     for words in ('gyro.delay_us.y', 'two_axis', 'seed of imu_sensor', 'digest of the errors',
@@ -93,7 +93,7 @@ def test_the_page_says_what_was_simulated(tmp_path):
 
 
 def test_settings_that_differ_are_those_of_the_file():
-    """The shown settings, read as parameters, give the same settings."""
+    """The settings shown on the page, read as parameters, give the same settings."""
     rows = changed_settings(SETTINGS)
     assert {row[0]: row[1] for row in rows}['gyro.errors.bandwidth_hz'] == '3 × 440.0'
     nodes = {row[0]: row[4] for row in rows}
@@ -103,13 +103,13 @@ def test_settings_that_differ_are_those_of_the_file():
 
 
 def test_the_same_page_has_the_same_bytes(tmp_path):
-    """The bytes are reproducible, although Bokeh numbers its objects through the whole process."""
+    """The bytes are reproducible, although Bokeh numbers its objects through the process."""
     pytest.importorskip('bokeh')
     assert written(tmp_path, EVERY) == written(tmp_path, EVERY)
 
 
 def test_the_script_is_as_small_as_promised(tmp_path):
-    """Figures add at most 1.5 MB of script to a page; nothing is fetched."""
+    """Figures add at most 1.5 MB of script to a page, and nothing is fetched."""
     pytest.importorskip('bokeh')
     empty = Chart('empty', 'Nothing', (Panel((), 'x', 'y'),))
     text = written(tmp_path, Page('t', 'a', (empty,)))
@@ -118,7 +118,7 @@ def test_the_script_is_as_small_as_promised(tmp_path):
 
 
 def test_curves_of_an_hour_stay_small(tmp_path):
-    """Twenty noisy curves of 360001 points: at most 5 MB including the script."""
+    """Twenty noisy curves of 360001 points need at most 5 MB, including the script."""
     pytest.importorskip('bokeh')
     t = np.arange(360001) / 6000.0
     noise = np.random.default_rng(1).normal(size=(20, len(t)))
@@ -128,7 +128,7 @@ def test_curves_of_an_hour_stay_small(tmp_path):
 
 
 def test_without_bokeh_the_figures_are_images(tmp_path, without_bokeh):
-    """The page states how to get zoomable figures; images of the folder are embedded."""
+    """Without Bokeh the page embeds images and states how to get zoomable figures."""
     (tmp_path / 'track.png').write_bytes(b'an image')
     outline = Outline(written(tmp_path, EVERY))
     assert NO_BOKEH in outline.texts
@@ -145,7 +145,7 @@ def test_a_page_without_figures_needs_no_script(tmp_path):
 
 
 def test_bokeh_is_loaded_by_what_writes_a_page_alone():
-    """Loading Bokeh takes half a second, which other verbs do not pay."""
+    """Bokeh, which takes half a second to load, is loaded only when a page is written."""
     code = ('import sys, ins_sim, ins_sim.cli.main, ins_sim.report.storage\n'
             'import ins_sim.report.page.html\n'
             'assert not [name for name in sys.modules if name.startswith("bokeh")]\n')
@@ -157,5 +157,5 @@ def test_bokeh_is_loaded_by_what_writes_a_page_alone():
     (np.int64(123456), '123456'), (None, '–'), (float('nan'), '–'), (True, 'yes'),
     (np.float64(1e-9), '1e-09'), ('word', 'word')])
 def test_cells(value, text):
-    """Numbers have four digits, counts are complete."""
+    """Numbers have four digits, and counts are complete."""
     assert cell_text(value) == text

@@ -1,4 +1,4 @@
-"""The figures of a run: suitable units, and a prediction only where it is meaningful."""
+"""The figures of a run: suitable units, and a prediction only if it is meaningful."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ def motion_2():
 
 
 def errors(size, n=1000):
-    """Return NavErrors of a size: m, m/s, rad, rad/s."""
+    """Return NavErrors of a given size: m, m/s, rad, rad/s."""
     ramp = np.linspace(0.0, size, n)[:, None] * np.array([1.0, -0.5, 0.0])
     return NavErrors(np.arange(n, dtype=np.int64) * 10 ** 9, ramp * 1e-6, ramp, ramp, ramp * 1e-9)
 
@@ -33,7 +33,7 @@ def labels(panel):
 
 
 def test_a_prediction_that_fits_has_a_panel_of_what_it_leaves(motion_2):
-    """Both curves coincide; the difference is drawn separately, a thousand times larger."""
+    """If prediction and run agree, the difference is drawn separately, a thousand times larger."""
     run, prediction = motion_2
     chart = error_chart('t', run.errors, prediction)
     position, residual, _, drift = chart.panels
@@ -57,7 +57,7 @@ def test_a_prediction_of_nothing_is_not_drawn(motion_2):
 
 
 def test_a_prediction_that_is_wrong_has_no_panel_of_its_own(motion_2):
-    """A wrong prediction has no panel of differences; both curves are visible."""
+    """A wrong prediction is drawn with the run, and there is no panel of differences."""
     run, prediction = motion_2
     doubled = replace(prediction, position=2.0 * prediction.position)
     chart = error_chart('t', run.errors, doubled)
@@ -65,9 +65,7 @@ def test_a_prediction_that_is_wrong_has_no_panel_of_its_own(motion_2):
 
 
 def test_what_delays_cause_is_the_run_less_its_twin():
-    """
-    With errors of a FOG of kilometres the panel of run minus twin shows the 4.5 m due to 1 us.
-    """
+    """The panel of run minus twin shows 4.5 m due to 1 us among kilometres due to a FOG."""
     settings = ins_sim.read_settings(['motion_2', 'delay_y_1us', 'imu_tactical_fog'],
                                      {'duration_s': 200.0})
     run, prediction = ins_sim.simulate(settings), ins_sim.predict(settings)
@@ -85,7 +83,7 @@ def test_what_delays_cause_is_the_run_less_its_twin():
 @pytest.mark.parametrize('size, unit, factor', [(2e4, 'km', 1e-3), (500.0, 'm', 1.0),
                                                 (0.01, 'mm', 1e3)])
 def test_positions_are_in_the_unit_of_their_size(size, unit, factor):
-    """Kilometres are used for large errors; up is left out if it is zero."""
+    """Large errors are drawn in km; up is left out if it is zero."""
     position = error_chart('t', errors(size)).panels[0]
     assert position.y_label == f'position error [{unit}]'
     assert labels(position) == ['east', 'north']
@@ -94,7 +92,7 @@ def test_positions_are_in_the_unit_of_their_size(size, unit, factor):
 
 
 def test_a_history_is_read_in_blocks():
-    """Curves contain the extremes of a long history, for any block boundaries."""
+    """Curves contain the extremes of a long history for any block length."""
     n = 200001
     values = np.random.default_rng(1).normal(size=(n, 3))
     history = NavErrors(np.arange(n, dtype=np.int64), values, values, values, values)

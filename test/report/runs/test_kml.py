@@ -1,4 +1,4 @@
-"""Tracks as KML can be parsed, and are correct on both sides of the antimeridian."""
+"""Tracks as KML can be parsed and are right on both sides of the 180th meridian."""
 
 import xml.etree.ElementTree as ElementTree
 
@@ -27,7 +27,7 @@ def placemarks(folder):
 
 
 def test_an_aided_flight_writes_its_tracks(tmp_path):
-    """Truth, solutions and fixes, to the digits of the file: 1e-8 deg, about 1 mm."""
+    """Truth, solutions and fixes are written with 1e-8 deg, about 1 mm."""
     assert command(tmp_path) == 0
     found = placemarks(tmp_path / 'run')
     assert list(found) == ['truth', 'aided solution', 'strapdown alone', 'GNSS fixes']
@@ -46,7 +46,7 @@ def test_an_aided_flight_writes_its_tracks(tmp_path):
 
 
 def test_what_stays_at_its_place_has_no_track(tmp_path):
-    """For a bench motion neither a track nor its figure is written."""
+    """A bench motion has neither a track nor a figure of it."""
     assert main(['simulate', '--params-file', 'motion_2', '-p', 'duration_s:=2.0', '-o',
                  str(tmp_path / 'run')]) == 0
     assert not (tmp_path / 'run' / FILE).exists()
@@ -54,7 +54,7 @@ def test_what_stays_at_its_place_has_no_track(tmp_path):
 
 
 def test_a_line_over_the_antimeridian_is_cut_there(tmp_path):
-    """From 179 deg east to 179 deg west and back: three pieces that meet at 180 deg."""
+    """A line from 179 deg east to 179 deg west and back has three pieces that meet at 180 deg."""
     lon = np.radians([178.0, 179.0, 181.0, 182.0, 179.5])
     lat = np.radians([10.0, 11.0, 13.0, 14.0, 19.0])
     height = np.array([0.0, 10.0, 30.0, 40.0, 90.0])
@@ -68,7 +68,7 @@ def test_a_line_over_the_antimeridian_is_cut_there(tmp_path):
 
 @pytest.mark.parametrize('lon', [[180.0, -180.0], [-180.0, 180.0], [179.9, -180.0], [10.0]])
 def test_a_point_on_the_antimeridian_divides_by_nothing(lon):
-    """With a point on the antimeridian all numbers are finite and no position is lost."""
+    """With a point on the 180th meridian all numbers are finite and no position is lost."""
     lon = np.array(lon)
     pieces = unbroken(lon, np.zeros(len(lon)), np.zeros(len(lon)))
     assert all(np.isfinite(piece).all() for piece in pieces)

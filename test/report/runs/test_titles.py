@@ -20,7 +20,7 @@ import pytest
      'Racetrack flight, IMU with gyro errors, 100 Hz, 1 h'),
 ])
 def test_a_title_names_motion_instrument_and_rate(files, assignments, words):
-    """An instrument is named by its preset, even if a few of its errors are changed."""
+    """A title names motion, instrument and rate; a preset is named even if errors are changed."""
     settings = parameter_files.read([resources.config(name) for name in files], assignments)
     assert title(settings) == words
 
@@ -29,5 +29,5 @@ def test_a_title_names_motion_instrument_and_rate(files, assignments, words):
     (3600.0, '1 h'), (5400.0, '1.5 h'), (3000.0, '50 min'), (59.99999999999999, '1 min'),
     (60.00000000000001, '1 min'), (100.0, '100 s'), (0.5, '0.5 s'), (7201.0, '7201 s')])
 def test_lengths(seconds, words):
-    """A length is given in the largest unit in which it is a round number."""
+    """A length is stated in the largest unit in which it is a round number."""
     assert length_words(seconds) == words

@@ -1,4 +1,4 @@
-"""In the chart of an Allan deviation each line is where the number in the legend says."""
+"""In the chart of an Allan deviation each line is where its number in the legend is."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def labelled(panel, start):
 
 
 def test_the_floor_that_is_drawn_is_the_number_in_the_legend():
-    """The line is flat at sqrt(2 ln 2/pi) = 0.664 of B, and both numbers are named."""
+    """The floor is drawn at sqrt(2 ln 2/pi) = 0.664 of B, and the legend has both numbers."""
     top, _ = allan_chart('a gyro', exact_noise()).panels
     floor = labelled(top, '0.664 B')
     assert isinstance(floor, Level) and floor.x is None
@@ -42,7 +42,11 @@ def test_the_floor_that_is_drawn_is_the_number_in_the_legend():
 
 
 def test_the_slopes_give_their_coefficient_where_it_is_read():
-    """N at 1 h in deg/h, K at 3 h; Q, in arcsec = deg/h s, at sqrt(3) s (IEEE Std 952)."""
+    """
+    N is read at 1 h in deg/h, K at 3 h, Q (arcsec = deg/h s) at sqrt(3) s.
+
+    Source: IEEE Std 952.
+    """
     top, _ = allan_chart('a gyro', exact_noise()).panels
     for start, value, tau_s in (('sqrt(3) Q/tau, Q = 5 arcsec', 5.0, 3.0 ** 0.5),
                                 ('N/sqrt(tau), N = 0.02 deg/sqrt(h)', 0.02, 3600.0),
@@ -53,9 +57,7 @@ def test_the_slopes_give_their_coefficient_where_it_is_read():
 
 
 def test_fit_settings_and_what_they_are_off():
-    """
-    The settings are shown beside the fit, and below it the difference in percent with its scatter.
-    """
+    """The chart shows fit and settings, and below the difference in percent with its scatter."""
     noise = exact_noise(settings=(5.0, 0.04, 0.5, 0.4))
     top, bottom = allan_chart('a gyro', noise).panels
     fit, expected = labelled(top, 'fit'), labelled(top, 'expected of the settings')
@@ -69,9 +71,7 @@ def test_fit_settings_and_what_they_are_off():
 
 
 def test_what_is_not_known_is_not_drawn():
-    """
-    Missing settings, settings without noise, and coefficients that were not found are not drawn.
-    """
+    """Missing settings, settings without noise, and missing coefficients are not drawn."""
     for noise in (exact_noise(settings=None), exact_noise(settings=(0.0,) * 4)):
         top, _ = allan_chart('a gyro', noise).panels
         assert not [m for m in top.marks if 'expected' in (getattr(m, 'label', '') or '')]
@@ -84,7 +84,7 @@ def test_what_is_not_known_is_not_drawn():
 
 
 def test_the_title_and_the_answer():
-    """Instrument, rate and length are in the title; the floor comes first, as in the figure."""
+    """The title has instrument, rate and length; the answer begins with the floor drawn."""
     noise = exact_noise()
     chart = allan_chart('imu_tactical_fog', noise)
     assert chart.name == 'gyro'

@@ -1,4 +1,4 @@
-"""The charts of the closed loop, as data."""
+"""The charts of the closed-loop study as data."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def flight(beta_deg, z=100.0, estimated=1.0):
 
 
 def test_flights_over_time():
-    """Sideslip in degrees, offset, and error of the estimate, of each flight."""
+    """Each flight has panels of sideslip in deg, offset, and error of the estimated offset."""
     chart = histories_chart('histories_0.15', 'a title', ['a', 'b'],
                             [flight(8.0), flight(0.1, 2e4)])
     sideslip, offset, error = chart.panels
@@ -34,7 +34,7 @@ def test_flights_over_time():
 
 
 def test_every_flight_of_the_table_looks_different():
-    """Colour and dash of a flight are unique, and the same in all panels."""
+    """Each flight has its own colour and dash, the same in all panels."""
     count = len(TABLE)
     chart = histories_chart('x', '', [str(k) for k in range(count)], [flight(1.0)] * count)
     looks = [[(mark.colour, mark.dash) for mark in panel.marks] for panel in chart.panels]
@@ -42,10 +42,7 @@ def test_every_flight_of_the_table_looks_different():
 
 
 def test_the_map_draws_no_limit_where_there_is_none():
-    """
-    Filters of one kind share a panel; a limit beyond the map is left out, a limit of zero is
-    drawn.
-    """
+    """Filters of one kind share a panel; limits off the map are left out, one of zero is drawn."""
     gains = np.array([0.1, 1.0, 10.0])
     curves = [MapCurves(gains, np.array([1.0, 0.5, 0.0]),
                         {1.0: np.array([1.0, 0.51, 0.0]), 100.0: np.array([0.9, 0.2, 0.0])})
@@ -66,7 +63,7 @@ def test_the_map_draws_no_limit_where_there_is_none():
 
 
 def test_what_the_tables_say():
-    """Quiet flights are counted, and the one with the largest oscillation is named."""
+    """The text counts the quiet flights and names the one with the largest oscillation."""
     quiet, restless = TABLE[0], next(case for case in TABLE if case.k_z == 0.17)
     rows = [loop_row(quiet, flight(0.01)), loop_row(restless, flight(8.0, 31.0), flight(7.9))]
     assert flights_answer(rows[:1]) == (

@@ -1,4 +1,4 @@
-"""The chart and the report of the tuned-gyro study, as data."""
+"""The chart and the report of the tuned-gyro study as data."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ CURVE = (CELLS[0], Cell(200.0, 9.9331, 9.9331, None), CELLS[1])
 
 
 def test_the_paper_beside_ours():
-    """Points of the paper on our curve, and the difference below, which the curve cannot show."""
+    """Published points are drawn on our curve, with the difference in a panel below."""
     chart = study_chart('dtg_study_speed', SETTINGS, CURVE, CELLS, (129.4, 337.4))
     top, bottom = chart.panels
     ours, paper = top.marks[:2]
@@ -43,7 +43,7 @@ def test_a_study_without_a_paper_has_no_difference():
 
 
 def test_the_report_answers():
-    """The worst amplitude, the difference from the paper, and the limits are stated."""
+    """The report states the worst amplitude, the difference from the paper, and the limits."""
     chart = study_chart('dtg_study_speed', SETTINGS, CURVE, CELLS, (129.4, 337.4))
     page = study_page([TunedGyroStudy('dtg_study_speed', SETTINGS, CELLS, (129.4, 337.4), chart)])
     assert page.answer == (

@@ -1,5 +1,5 @@
 """
-A stand-in for another simulator: a process that publishes only nav_msgs/Odometry.
+A process that replaces another simulator: it publishes only nav_msgs/Odometry.
 
 Arguments: a motion of ``other_simulators.MOTIONS``, rate in Hz, length in s, and whether it uses
 lock-step (it then waits for the acknowledgements of truth_adapter) or real time.

@@ -45,13 +45,13 @@ def expected():
 
 
 def without_covariances(numbers):
-    """Return pose and twist of the doubles of ins/odometry."""
+    """Return pose and twist from the doubles of ins/odometry."""
     return numbers[:7] + numbers[43:49]
 
 
 @pytest.mark.parametrize('pace', ['lock_step', 'real_time'])
 def test_another_simulator_drives_imu_and_strapdown(pace, ros_domain, tmp_path):
-    """In lock-step and in real time all numbers equal those of the same run without nodes."""
+    """In lock-step and in real time all numbers equal those of the run without nodes."""
     chain, listener = Chain(ros_domain, tmp_path), Listener(ros_domain, WANTED)
     chain.environment['PYTHONPATH'] += f':{ROOT / "test"}'
     place = {**PLACE, 'vertical.channel': 'free'}

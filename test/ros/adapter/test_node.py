@@ -1,4 +1,4 @@
-"""The node truth_adapter beside an IMU and a strapdown, without DDS."""
+"""The node truth_adapter with an IMU and a strapdown, without DDS."""
 
 import struct
 
@@ -16,7 +16,7 @@ LOCK_STEP = {'pacing.lock_step': True, 'pacing.window': 20, 'pacing.timeout_s': 
 
 
 class Graph(FedNodes):
-    """truth_adapter with the parameters given, imu_sensor and strapdown."""
+    """truth_adapter with the given parameters, imu_sensor and strapdown."""
 
     def __init__(self, others=True, **parameters):
         nodes = {'imu_sensor': PLACE, 'strapdown': PLACE} if others else {}
@@ -27,7 +27,7 @@ class Graph(FedNodes):
         self.adapter = self.nodes['truth_adapter']
         self.acked, self.stamps = [], []
         self.bus.listen = self._hear
-        # The announcement of the adapter, which the bus does not carry.
+        # The announcement of the adapter, which the test bus does not carry.
         for node in self.nodes.values():
             node._announced.take(self.adapter._announced.run.pack())
         return self
@@ -45,7 +45,7 @@ class Graph(FedNodes):
         return list(self.logs['truth_adapter'].kept)
 
     def send(self, messages, pause_s=0.02):
-        """Send messages of the other simulator, and advance time."""
+        """Send messages of the other simulator, and let time pass."""
         for data in messages:
             self.bus.put(ODOM, data)
             self.bus.drive()
@@ -69,7 +69,7 @@ def shifted(data, shift_ns):
 
 @pytest.mark.parametrize('pacing', [{}, LOCK_STEP], ids=['real time', 'lock-step'])
 def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
-    """Truth, readings and solutions exist for every instant, and adaptations are logged once."""
+    """Truth, readings and solutions exist for every instant; each adaptation is logged once."""
     with Graph(**pacing) as graph:
         graph.send(messages_of())
         assert graph.stamps == sorted(set(graph.stamps)) and len(graph.stamps) > 380
@@ -80,7 +80,7 @@ def test_an_imu_and_a_strapdown_follow(pacing, ros_domain):
 
 
 def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
-    """Stamps near 0 and those of 2026 are kept as the stamps of the truth."""
+    """Stamps near 0 and stamps of 2026 are kept as the stamps of the truth."""
     shift_ns = 1_796_000_000 * 10**9
     with Graph() as graph:
         graph.send(messages_of())
@@ -92,8 +92,9 @@ def test_stamps_of_the_past_and_of_a_wall_clock_are_taken(ros_domain):
 
 def test_a_simulator_that_waits_is_held_by_the_consumers(ros_domain):
     """
-    Without acknowledgements of strapdown one window of truth is sent, and the input is not
-    acknowledged.
+    Without acknowledgements of strapdown one window of truth is sent.
+
+    The input is not acknowledged.
     """
     with Graph(others=False, **LOCK_STEP) as graph:
         graph.send(messages_of())
@@ -109,7 +110,7 @@ def test_a_simulator_that_waits_is_held_by_the_consumers(ros_domain):
 
 
 def test_a_consumer_that_never_answers_is_named(ros_domain):
-    """After pacing.timeout_s one message names it, and the node ends."""
+    """After pacing.timeout_s one message names the silent consumer, and the node ends."""
     with Graph(others=False, **LOCK_STEP) as graph:
         graph.send(messages_of())
         for _ in range(60):
@@ -120,7 +121,9 @@ def test_a_consumer_that_never_answers_is_named(ros_domain):
 
 def test_a_simulator_that_begins_again_is_followed_in_lock_step(ros_domain):
     """
-    When the stamps jump back all nodes start anew after all acknowledgements; nothing is lost.
+    When the stamps jump back all nodes start anew after all acknowledgements.
+
+    No sample is lost.
     """
     with Graph(**LOCK_STEP) as graph:
         graph.send(messages_of())
@@ -146,7 +149,7 @@ def test_one_that_does_not_wait_is_told(ros_domain):
     (('odom_ned', 'base_link'), "has the frame 'odom_ned'; expected a world with z up"),
     (('world', 'base_link_frd'), "has the frame 'base_link_frd'")])
 def test_a_frame_that_is_not_enu_is_refused(frames, said, ros_domain):
-    """A world with z down gives no truth, and a message says so."""
+    """A world with z down gives no truth, and one message."""
     with Graph(others=False) as graph:
         graph.send(messages_of(frames=frames))
         assert not graph.stamps and any(said in line for line in graph.said)
@@ -164,7 +167,7 @@ def test_two_vehicles_on_one_topic_are_told_apart(ros_domain):
 
 
 def test_damaged_messages_are_said_and_passed_over(ros_domain):
-    """Bytes that are not Odometry, and implausible values, do not end the node."""
+    """Bytes that are not Odometry, and implausible values, are reported and end no node."""
     messages = messages_of(8.0)
     messages[150] = messages[150][:200]
     messages[250] = messages[250][:-8] + struct.pack('<d', float('nan'))
@@ -180,7 +183,7 @@ def test_damaged_messages_are_said_and_passed_over(ros_domain):
 
 
 def test_an_odometry_that_stops_is_missed(ros_domain):
-    """Silence is reported, and truth continues after it."""
+    """A silent input is reported, and truth continues when it returns."""
     with Graph() as graph:
         messages = messages_of(8.0)
         graph.send(messages[:200])
@@ -209,7 +212,7 @@ def test_reset_judges_anew(ros_domain):
     ({'pacing.window': 2000, 'topics.depth': 100}, 'expected at most topics.depth, 100'),
     ({'pacing.lock_step': True, 'pacing.required': []}, 'pacing.required is empty')])
 def test_parameters_that_do_not_go_together_are_refused(values, said, ros_domain):
-    """One message names key, value and expectation."""
+    """Contradicting parameters give one message with key, value and expectation."""
     with pytest.raises(ValueError, match=said.replace('(', '[(]')):
         with Graph(others=False, **values):
             pass

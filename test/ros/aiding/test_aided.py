@@ -33,7 +33,11 @@ REQUIRED = '[strapdown, velocity_meter, gnss, aided_navigator, listener]'
 
 
 def lock_step(domain, folder, order, load=0, reset_ns=None):
-    """Run six processes, after reset_ns from the start again; return {topic: {stamp: doubles}}."""
+    """
+    Run six processes; return {topic: {stamp: doubles}}.
+
+    reset_ns: instant at which the generator is reset to sample 0.
+    """
     folder.mkdir()
     listener, chain = Listener(domain, HEARD), Chain(domain, folder)
     hogs = [subprocess.Popen([sys.executable, '-c', 'while True: pass']) for _ in range(load)]
@@ -52,7 +56,7 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
         listener.poll_until(lambda: all(12 * SECOND in h for h in listener.heard.values()))
         texts = [chain.text(process) for process in started.values()]
         assert set(chain.end().values()) == {0}, texts
-        # If the machine stops for a second, the navigator logs it.
+        # If the machine stalls for a second, the navigator logs it.
         warnings = [line for text in texts for line in text.splitlines()
                     if 'WARN' in line and 'waiting for a fix of' not in line]
         assert all('jumps back' in line for line in warnings), warnings
@@ -67,11 +71,10 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    Every topic agrees to the rounding of truth and solution in Cartesian messages, as in
-    test_graph.
+    Every topic agrees with the offline run to the rounding of Cartesian messages.
 
-    Then the same bits follow with the nodes started in another order on a busy machine, and once
-    more when the generator goes back to sample 0 in between.
+    The bounds are those of test_graph. The bits are the same with the nodes in another order on a
+    busy machine, and once more when the generator is reset to sample 0 in between.
     """
     heard = lock_step(ros_domain, tmp_path / 'first', NODES)
     settings = chosen_settings({**VALUES, 'source': 'stream'})
@@ -103,7 +106,8 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
         assert len(heard[name]) == len(states)
         difference = np.abs(got - np.array(rows))
         if name == 'aided/odometry':
-            # The angular rate is measured by the gyros and relative to the Earth.
+            # The angular rate is that measured by the gyros, converted to a rate relative to the
+            # Earth.
             assert np.abs(got[:, 46:49]).max() > 1e-6
             difference[:, 46:49] = 0.0
         bound = most.get(name, 8e-9)
@@ -120,19 +124,14 @@ HAND = {'window.cycles': 100, 'initial.velocity_sigma_m_s': 0.0, 'gate_probabili
 
 
 def send_both(stream, first, stop):
-    """
-    Publish readings of the samples first to stop - 1, which wait for the truth, and then the
-    truth.
-    """
+    """Publish readings first to stop - 1, which wait for the truth, and then the truth."""
     stamps = np.arange(first, stop) * DT
     stream.send(stamps, topics.IMU_RAW)
     stream.send(stamps)
 
 
 def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path):
-    """
-    After 5 s the navigator logs it and continues; when records arrive it waits for them again.
-    """
+    """After 5 s without the meter the navigator continues; late records still count."""
     stream = Stream(ros_domain, tmp_path, (topics.AIDED_ERRORS[1],),
                     {'motion.kind': 'racetrack'}, ALONE)
     values = {'window.cycles': 100, 'limits.height_max_m': 2e4}
@@ -150,7 +149,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
         stream.listener.poll_until(lambda: 150 * DT in errors)
         stream.wait_diagnosis('continuing without velocity_meter')
         fixes = offline_fixes(stream, np.arange(0, 301) * DT, values)
-        # The record is wrong by 5 m/s, so that its use is visible.
+        # The velocity of the record is wrong by 5 m/s, so that its use is visible.
         late = replace(fixes[0], velocity=(fixes[0].velocity[0] - 5.0, fixes[0].velocity[1]))
         stream.send_bytes(topics.METER_RECORD, velocity_record.pack_fix(late, 0))
         send_both(stream, 151, 231)
@@ -180,6 +179,7 @@ def test_a_silent_meter_is_named_and_its_late_record_counts(ros_domain, tmp_path
     ({'filter': 'paper', 'gnss_model.use': True}, 'expected a filter that processes GNSS: eskf'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
+    """An invalid parameter of aided_navigator gives one message and exit code 2."""
     chain = Chain(ros_domain, tmp_path)
     process = chain.start('aided_navigator', values)
     assert process.wait(60.0) == 2
@@ -189,7 +189,7 @@ def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain
 
 def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_path):
     """
-    Every topic is complete in the bag, although meter, GNSS and sigmas are silent at sample 0.
+    A recorder has every topic completely, although meter, GNSS and sigmas are silent at first.
 
     The records are the offline fixes to the rounding of the truth; aided/fix states that its
     covariance is unknown, and aided/sigma/* is silent.
@@ -223,7 +223,7 @@ def test_a_recorder_keeps_all_of_a_filter_without_a_covariance(ros_domain, tmp_p
         fix, aided = bag.arrays('gnss/fix'), bag.arrays('aided/fix')
     dense = [t.name for t in topics.AIDING if t not in topics.SELDOM]
     assert {name: counts[name] for name in dense} == dict.fromkeys(dense, 601)
-    # GNSS at 0 to 5 s, because that of 6 s is late; the window of 6 s too.
+    # GNSS fixes of 0 to 5 s, because that of 6 s is late; the same for the window of 6 s.
     assert counts['gnss/fix'] == 6 and counts['gnss/velocity'] == 5
     assert fix['status'].tolist() == [0, 0, 0, 0, 0, -1]
     assert not any(counts[t.name] for t in topics.AIDED_SIGMAS)

@@ -1,4 +1,4 @@
-"""Six live nodes in lock-step, recorded, are the bag of ``simulate --aided --bag``."""
+"""The recorded bag of six live nodes in lock-step equals that of ``simulate --aided --bag``."""
 
 from support.aided_runs import command
 from ins_sim.bags.bag_reader import open_bag
@@ -17,14 +17,14 @@ FLIGHT = ('duration_s:=20.0', 'time.epoch:=fixed', 'time.epoch_s:=0',
           f'pacing.required:=[{", ".join(NODES)}, recorder]')
 FRAMED = [topic for topic in topics.AIDING if topic is not topics.METER_RECORD]
 # One ulp of the radius of the Earth is 1e-9 m, and a position is a sum of a few such terms; the
-# effect of the rounding of the truth in a message over 20 s is far below.
+# effect of the rounding of the truth in a message over 20 s is far smaller.
 ROUNDING = {'position': 1e-8, 'altitude': 1e-8, 'vector': 1e-8, 'latitude': 1e-13,
             'longitude': 1e-13}
 RELATIVE = 1e-11
 
 
 def test_live_is_offline_message_for_message(ros_domain, tmp_path, capsys):
-    """The stamps agree on every topic; the parameters are those written by the offline run."""
+    """Stamps agree on every topic, values to rounding; parameters are those of the offline run."""
     assert command(tmp_path, '--bag', str(tmp_path / 'offline'), flight=FLIGHT) == 0
     names = [topic.name for topic in (topics.INS_ODOMETRY, *topics.AIDING)]
     file = str(tmp_path / 'run' / 'parameters.yaml')

@@ -9,8 +9,8 @@ pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
 
 RATE_HZ, SECONDS = 100, 15
-# The meter in mode signal, GNSS with an outage in the middle; set by node, because a node section
-# of a file overrides what is given for all nodes.
+# The meter in mode signal, GNSS with an outage in the middle; set for each node, because a node
+# section of a file overrides parameters set for all nodes.
 VALUES = {'motion_generator:duration_s': float(SECONDS), 'velocity_meter:mode': 'signal',
           'aided_navigator:gnss_model.use': True, 'gnss:outages.start_s': [SECONDS / 3.0],
           'gnss:outages.end_s': [SECONDS / 1.5]}
@@ -20,7 +20,7 @@ HEARD = {topics.TRUTH_IMU: RATE_HZ, topics.IMU_RAW: RATE_HZ, topics.INS_ODOMETRY
 
 def test_real_time_loses_nothing(ros_domain, tmp_path):
     """
-    Each topic is complete from its first message to the last instant.
+    In real time each topic is complete from its first received message to the last instant.
 
     Messages sent before DDS discovery are received by no node. Ten minutes of the same, and the
     CPU time of each node, are printed by benchmarks/live_aided.py.

@@ -30,7 +30,7 @@ def offline(stream, stamps_ns, values):
 
 
 def heard_fixes(stream):
-    """Return the fixes that a reader makes of the received messages."""
+    """Return the fixes that a reader makes from the received messages."""
     pairs, found = GnssPairs(0, 120_000_000), []
     for data in stream.raw['gnss/velocity'].values():
         pairs.push_velocity(data)
@@ -41,10 +41,10 @@ def heard_fixes(stream):
 
 def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
     """
-    Bytes of every message; a fix waits for the truth of its arrival; outages publish invalid
-    fixes.
+    The fixes have the bytes of the core, each sent when the truth has reached its arrival.
 
-    The service starts an outage and ends it; /diagnostics count.
+    During outages invalid fixes are published. The service starts and ends an outage; /diagnostics
+    count.
     """
     from std_srvs.srv import SetBool
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
@@ -63,7 +63,7 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
         stream.wait_counts({topics.GNSS_FIX: 21, topics.GNSS_VELOCITY: 18})
         writer = GnssWriter(0)
         for fix_ in expected[:21]:
-            # DDS pads messages to a multiple of four bytes..
+            # DDS pads messages to a multiple of four bytes.
             assert stream.raw['gnss/fix'][fix_.t_ns].startswith(writer.fix(fix_))
             assert (fix_.t_ns in stream.raw['gnss/velocity']) == fix_.valid
             assert not fix_.valid or stream.raw['gnss/velocity'][fix_.t_ns].startswith(
@@ -79,7 +79,8 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
         stream.listener.call(SetBool, 'gnss/outage', SetBool.Request(data=False))
         stream.send(np.arange(1201, 1301) * DT)
         stream.wait_counts({topics.GNSS_FIX: 26, topics.GNSS_VELOCITY: 20})
-        # The fix of 10.5 s was on its way when the outage started, that of 12.0 s when it ended.
+        # The fix of 10.5 s was being delayed when the outage started, that of 12.0 s when it
+        # ended.
         last = heard_fixes(stream)[21:]
         assert [f.valid for f in last] == [True, False, False, False, True]
         v = offline(stream, np.arange(1200, 1301) * DT, VALUES)[1].v_n
@@ -89,6 +90,7 @@ def test_the_fixes_are_those_of_the_core(ros_domain, tmp_path):
 
 
 def test_diagnostics_count_fixes_and_outages(ros_domain, tmp_path):
+    """/diagnostics has the numbers of fixes and outages, and whether one is forced."""
     from diagnostic_msgs.msg import DiagnosticArray
     stream = Stream(ros_domain, tmp_path, HEARD)
     said = {}
@@ -107,7 +109,7 @@ def test_diagnostics_count_fixes_and_outages(ros_domain, tmp_path):
 
 
 def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
-    """A fix on its way is not carried into the new run; NaN is dropped."""
+    """After a jump back delayed fixes of the old run are dropped, as is truth with NaN."""
     stream = Stream(ros_domain, tmp_path, HEARD)
     try:
         node = stream.chain.start('gnss', {'gnss.latency_ms': 500.0})
@@ -124,7 +126,7 @@ def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
         stream.wait_diagnosis('gap')
         stream.wait_ack(300 * DT)
         stream.listener.poll_until(lambda: SECOND in fix)
-        # The fix of 2.0 s was on its way in both runs and is dropped both times.
+        # The fix of 2.0 s was being delayed in both runs and is dropped both times.
         assert sorted(fix) == [0, SECOND]
     finally:
         stream.close()
@@ -136,6 +138,7 @@ def test_a_jump_back_starts_anew_and_nan_is_dropped(ros_domain, tmp_path):
     ({'outages.start_s': '[1.0]'}, 'outages.start_s has 1 entries and outages.end_s 0; expected'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
+    """An invalid parameter of gnss gives one message and exit code 2."""
     chain = Chain(ros_domain, tmp_path)
     process = chain.start('gnss', values)
     assert process.wait(60.0) == 2

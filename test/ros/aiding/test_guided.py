@@ -13,10 +13,10 @@ pytestmark = pytest.mark.live
 
 FILES = ('default', 'guided_flight')
 LENGTH_S = 4.0
-# A meter with errors, so that the loop is active.
+# A meter with errors, so that the guidance loop has errors to correct.
 VALUES = {'filter': 'paper_corrected', 'velocity_meter:surrogate.k_z': 0.15,
           'duration_s': LENGTH_S, 'guidance.latency_s': 0.03, 'motion.guided.offset_m': 5.0}
-# Set by node, because a node section of a file overrides what is given for all nodes.
+# Set for each node, because a node section of a file overrides what is set for all nodes.
 LIVE = {'motion.guided.offset_m': 5.0, 'aided_navigator:filter': 'paper_corrected',
         'velocity_meter:surrogate.k_z': 0.15,
         'motion_generator:duration_s': LENGTH_S, 'motion_generator:guidance.latency_s': 0.03,
@@ -51,7 +51,7 @@ def lock_step(domain, folder, order):
 
 def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     """
-    Command, truth and solution agree to the rounding of Cartesian messages; twice the same bits.
+    Command, truth and solution agree with the offline run to rounding, twice with equal bits.
 
     A position is a sum of a few terms of the radius of the Earth, each rounded to 1e-9 m; the
     command changes by 0.0125 rad/m times that, and the solution follows the changed truth.
@@ -69,7 +69,7 @@ def test_lock_step_is_the_offline_run(ros_domain, tmp_path):
     off = np.abs(got - expected).max(axis=0)
     print(f'\ncommand, z and v_z off by {off}; largest {np.abs(expected).max(axis=0)}')
     assert off[0] < 2e-10 and off[1] < 1.6e-8 and off[2] < 1e-9
-    # The command is below its limit of 8 deg, and at least half a degree.
+    # The command stays below its limit of 8 deg and reaches at least half a degree.
     assert 0.01 < np.abs(expected[-1, 0]) and np.abs(expected[:, 0]).max() < 0.13
     frame = MapFrame(run.run.settings.motion_generator.datum, True)
     for record, topic in ((run.run.truth, topics.TRUTH_ODOMETRY), (run.states,

@@ -1,4 +1,4 @@
-"""Six nodes in real time, the loop closed over DDS for ten minutes: nothing is lost."""
+"""Six nodes in real time with the guidance loop closed over DDS lose nothing in ten minutes."""
 
 import math
 
@@ -19,8 +19,7 @@ HEARD = (topics.TRUTH_IMU, topics.IMU_RAW, topics.INS_ODOMETRY, topics.AIDED_ODO
 
 def test_ten_minutes_lose_nothing_and_the_loop_stays_closed(ros_domain, tmp_path, figures):
     """
-    Each topic is complete from its first message on; the sideslip decays, and no warning is
-    logged.
+    Each topic is complete from its first message on, the sideslip decays, no warning is logged.
 
     The vehicle starts 100 m to the right of the leg, and the eskf with perfect instruments knows
     its position. Messages sent before DDS discovery are received by no node.

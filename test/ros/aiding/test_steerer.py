@@ -1,4 +1,4 @@
-"""The steering topic, node objects without DDS: for any input the vehicle keeps flying."""
+"""The input that steers the vehicle, node objects without DDS: for any input it keeps flying."""
 
 import math
 import struct
@@ -12,10 +12,10 @@ from support.hostile.flight import HostileFlight, STEERED
 pytest.importorskip('rclpy')
 
 NAME = topics.AIDED_ODOMETRY.name
-# So near to the leg that the command is not at its limit.
+# So near to the leg that the command is not limited.
 NEAR = {'motion.kind': 'guided', 'rate_hz': 100.0, 'topics.depth': 500, 'duration_s': 0.0,
         'motion.guided.offset_m': 5.0, 'time.epoch_s': 0}
-# The doubles of a message of Odometry.
+# Offsets of the doubles in an Odometry message.
 DOUBLES = 85
 
 
@@ -53,11 +53,11 @@ class Steered(HostileFlight):
 
     @property
     def why(self):
-        """Return the reason for which the autopilot does not steer, '' if it does."""
+        """Return the reason why the autopilot does not steer, or '' if it does."""
         return self.generator._steerer._command.why
 
     def engage(self, on):
-        """Call the service; return its response."""
+        """Call the service that engages the autopilot; return its response."""
         return self.generator._on_engage(SimpleNamespace(data=on), SimpleNamespace())
 
 
@@ -70,14 +70,14 @@ def flight(ros_domain):
 
 
 def with_double(data, index, change):
-    """Return a message of Odometry with another double."""
+    """Return an Odometry message with one double replaced."""
     spoilt, at = bytearray(data), len(data) - 8 * (DOUBLES - index)
     struct.pack_into('<d', spoilt, at, change(*struct.unpack_from('<d', data, at)))
     return bytes(spoilt)
 
 
 def moved(data, shift_ns):
-    """Return a message with a stamp later by a shift."""
+    """Return a message whose stamp is later by a shift."""
     stamp_ns, _ = topics.AIDED_ODOMETRY.reader(((0, 1),)).read(data)
     return data[:4] + struct.pack('<iI', *divmod(stamp_ns + shift_ns, SECOND)) + data[12:]
 
@@ -108,9 +108,7 @@ def in_frames(data, *frames):
     ids=('silence', 'nan', 'speed', 'frame', 'child frame', 'ahead', 'back', 'short', 'jump',
          'quaternion'))
 def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
-    """
-    One message; the last solution is held for a second, then the vehicle flies straight and level.
-    """
+    """A bad solution gives one message, is held for 1 s, and a good one steers again."""
     before = len(flight.commands)
     flight.change = change
     flight.good(250)
@@ -130,7 +128,7 @@ def test_what_steers_goes_wrong_and_comes_back(change, sentence, flight):
 
 
 def test_two_publishers_are_named(flight):
-    """Diagnostics name them, as for every topic with a single intended publisher."""
+    """Diagnostics name two publishers of the topic that steers."""
     flight.generator.count_publishers = lambda name: 2 if name.endswith(NAME) else 1
     flight.generator.get_publishers_info_by_topic = lambda name: []
     flight.generator.monitor.publish()
@@ -138,7 +136,7 @@ def test_two_publishers_are_named(flight):
 
 
 def test_two_that_alternate_300_km_apart_do_not_steer(flight):
-    """Of two messages with one stamp the first counts, and every second one is a jump."""
+    """If two publishers 300 km apart alternate, every second solution is a jump: no steering."""
     turn = [0]
 
     def alternate(data):
@@ -166,7 +164,7 @@ def test_disengaged_it_flies_straight(flight):
 
 
 def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
-    """It logs this; the turn is flown as on a route."""
+    """Engaged in a turn the autopilot starts at the end of the turn, and logs this."""
     route = {'motion.route.points.latitude_deg': [55.0, 55.5, 55.6],
              'motion.route.points.longitude_deg': [37.0, 37.3, 38.2]}
     with Steered({**route, 'start_s': 285.0, 'guidance.engage_after_s': 1e6}) as flight:
@@ -184,6 +182,7 @@ def test_engaged_in_a_turn_it_waits_for_its_end(ros_domain):
      'solutions on guidance.topic; the vehicle flies straight until one arrives')],
     ids=('latency', 'nobody'))
 def test_a_loop_that_cannot_be_closed_is_named_once(generator, sentence, ros_domain):
+    """A latency without phase margin, and a topic without publisher, give one message."""
     with Steered(generator) as flight:
         flight.good(520)
         assert flight.said.count(sentence) == 1
@@ -199,7 +198,7 @@ def test_a_command_beyond_the_limit_is_counted(ros_domain):
 
 
 def test_a_filter_that_refuses_turns_steers_on(ros_domain):
-    """With filter paper the loop stays closed; the navigator logs its refusals."""
+    """With filter paper in a turn the loop stays closed; the navigator logs rejected fixes."""
     with Steered(aided_navigator={'rate_hz': 100.0, 'filter': 'paper', 'window.cycles': 50,
                                   'topics.depth': 500}) as flight:
         flight.good(300)
@@ -207,7 +206,7 @@ def test_a_filter_that_refuses_turns_steers_on(ros_domain):
 
 
 def test_an_autopilot_that_raises_is_named(flight):
-    """The vehicle flies straight, and no node ends."""
+    """If an autopilot raises an exception, the vehicle flies straight and no node ends."""
     flight.generator._steerer.steering.autopilot.command = lambda *_: 1 / 0
     flight.good(20)
     assert 'the autopilot raised ZeroDivisionError (division by zero) at ' in flight.said
@@ -215,7 +214,7 @@ def test_an_autopilot_that_raises_is_named(flight):
 
 
 def test_after_a_reset_the_flight_is_the_same(flight):
-    """The bits are the same; a solution of the old run that was on its way is not used."""
+    """After a reset the flight has the same bits; no solution of the old run is used."""
     first = list(flight.commands)
     flight.good(1)
     flight.commands.clear()
@@ -241,7 +240,9 @@ class LockStep:
 
 def test_solutions_that_come_seldom_are_not_waited_for_at_every_instant(flight):
     """
-    With every tenth solution the interval is learnt, and the newest one up to the instant is used.
+    If solutions come with every tenth sample, the interval is learnt and there is no other wait.
+
+    The newest solution up to the instant is used.
     """
     turn = [0]
 
@@ -276,7 +277,7 @@ def test_solutions_that_are_always_late_are_said_once(flight):
 
 
 def test_in_lock_step_it_waits_less_and_less_for_who_is_silent(flight):
-    """5 s, 2.5 s, ...: an estimator that has ended costs 10 s in all."""
+    """In lock-step a silent estimator is waited for 5 s, 2.5 s, ...: 10 s in all."""
     flight.change = lambda data: None
     flight.good(1)
     lock = LockStep(flight)

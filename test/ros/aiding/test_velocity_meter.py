@@ -19,7 +19,7 @@ BOTH = (topics.TRUTH_ODOMETRY, INS)
 
 
 class Record:
-    """The record as a topic for the Listener: no doubles, its bytes are compared."""
+    """The record as a topic for the Listener: it has no doubles, so its bytes are compared."""
 
     name, type_name = topics.METER_RECORD.name, topics.METER_RECORD.type_name
 
@@ -42,7 +42,7 @@ def records(stream):
                                                 ('surrogate', 20, 28)])
 def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, tmp_path):
     """
-    Every window is published when the truth has reached its arrival, with the angle of the INS.
+    Every window is published when the truth reaches its arrival, with the angle of the INS.
 
     A window waits for the INS: truth alone gives no record and no acknowledgement.
     """
@@ -60,7 +60,7 @@ def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, t
         assert 3 * SECOND not in stream.heard[Record.name]
         assert max(stream.heard['sim/ack']) == 299 * DT
         stream.send(stamps[300:], INS, ins[300:])
-        # The record of 3 s is on its way.
+        # The record of 3 s is still being delayed.
         stream.wait_ack(303 * DT)
         assert 3 * SECOND not in stream.heard[Record.name]
         stream.send(stamps[304:])
@@ -78,7 +78,11 @@ def test_the_records_are_the_fixes_of_the_core(mode, slide, count, ros_domain, t
 
 
 def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
-    """After 5 s a warning; windows are invalid, with a record each, until the INS delivers."""
+    """
+    After 5 s without the INS a warning is logged; windows are invalid until it returns.
+
+    Each invalid window has a record.
+    """
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', VALUES)
@@ -90,7 +94,7 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
         assert {f.status for f in records(stream)} == {'no INS velocity in the window'}
         assert all(f.cycles == 100 and np.isnan(f.velocity).all() for f in records(stream))
         stream.wait_diagnosis('no message on ins/odometry')
-        # Windows are published at once now, and are valid again with the INS.
+        # Windows are now published without a wait, and are valid again with the INS.
         stream.send(np.arange(311, 411) * DT)
         stream.listener.poll_until(lambda: 4 * SECOND in stream.heard[Record.name], 4.0)
         stamps = np.arange(401, 511) * DT
@@ -105,7 +109,7 @@ def test_without_the_ins_it_says_so_and_goes_on(ros_domain, tmp_path):
 
 
 def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path):
-    """In lock-step the generator waits for the acknowledgement, and /clock with it."""
+    """In lock-step /clock stops while the generator waits; the node still gives up its wait."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', {**VALUES, 'use_sim_time': True})
@@ -125,7 +129,11 @@ def test_simulated_time_that_stands_still_holds_nothing_up(ros_domain, tmp_path)
 
 
 def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
-    """Calm water: one record for each window, no velocity; /diagnostics state the last reason."""
+    """
+    Over calm water each window has an invalid record and no velocity.
+
+    /diagnostics state the last reason.
+    """
     from diagnostic_msgs.msg import DiagnosticArray
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
     values = {**VALUES, 'attack_angle': 'none', 'window.latency_ms': 0.0,
@@ -151,7 +159,7 @@ def test_invalid_windows_are_recorded_and_counted(ros_domain, tmp_path):
 
 
 def test_a_gap_starts_anew(ros_domain, tmp_path):
-    """A window with a gap has no record: the instrument starts anew."""
+    """A window with a gap has no record: the sensor starts anew."""
     stream = Stream(ros_domain, tmp_path, HEARD, FLIGHT)
     try:
         node = stream.chain.start('velocity_meter', {**VALUES, 'attack_angle': 'none'})
@@ -166,7 +174,7 @@ def test_a_gap_starts_anew(ros_domain, tmp_path):
 
 
 def test_a_jump_back_begins_anew(ros_domain, tmp_path):
-    """The second run has every window of the first, whatever INS messages were on their way."""
+    """After a jump back the second run has every window of the first, whatever INS is late."""
     stream = Stream(ros_domain, tmp_path, (Record,), FLIGHT, BOTH)
     try:
         node = stream.chain.start('velocity_meter', VALUES)
@@ -198,6 +206,7 @@ def test_a_jump_back_begins_anew(ros_domain, tmp_path):
     ({'drop_outs.start_s': '[1.0]'}, 'drop_outs'),
 ])
 def test_a_bad_parameter_is_one_sentence_and_code_2(values, sentence, ros_domain, tmp_path):
+    """An invalid parameter of velocity_meter gives one message and exit code 2."""
     chain = Chain(ros_domain, tmp_path)
     process = chain.start('velocity_meter', values)
     assert process.wait(60.0) == 2

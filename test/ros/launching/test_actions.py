@@ -1,4 +1,4 @@
-"""The launch files with stand-ins for launch: what they start, and what ends them."""
+"""The launch files, run with stand-ins for launch: what they start, and what ends them."""
 
 import os
 import runpy
@@ -20,7 +20,7 @@ MODULES = {
 
 
 class Call:
-    """A constructor of launch that stores its arguments."""
+    """Replacement for constructors of launch: it stores its arguments."""
 
     def __init__(self, *words, **named):
         self.what, self.words = type(self).__name__, words
@@ -28,7 +28,7 @@ class Call:
 
 
 class Configuration:
-    """The value of a launch argument."""
+    """Replacement for the value of a launch argument."""
 
     def __init__(self, name):
         self.name = name
@@ -39,7 +39,7 @@ class Configuration:
 
 
 class Context(SimpleNamespace):
-    """A context with the values of the launch arguments and the current event."""
+    """Replacement for the context: the values of launch arguments and the current event."""
 
     is_shutdown = False
 
@@ -106,7 +106,7 @@ def flat(actions):
 
 
 def handlers(actions):
-    """Return {process: handler of its end} of actions."""
+    """Return {process: handler of its exit} of actions."""
     registered = [a.words[0] for a in actions if a.what == 'RegisterEventHandler']
     assert all(h.what == 'OnProcessExit' for h in registered)
     nodes = {id(action): name for name, action in flat(actions).items()}
@@ -120,9 +120,7 @@ def text_of(node):
 
 
 def test_simulation(started):
-    """
-    The nodes of the table start with the same files, in the namespace, with the defaults first.
-    """
+    """All nodes have the files, the namespace, and the defaults first."""
     actions = started('simulation', motion='racetrack', imu='imu_tactical_mems', rate_hz='200.0',
                       namespace='left', tf='none', before={'ros_namespace': '/fleet'})
     nodes = flat(actions)
@@ -138,14 +136,14 @@ def test_simulation(started):
 
 
 def test_one_process_has_no_name(started):
-    """ROS would give the name to all nodes of the process."""
+    """The process of all nodes has no name, which ROS would give to all of its nodes."""
     nodes = flat(started('simulation', one_process='true', record='bag'))
     assert set(nodes) == {'simulation', 'recorder'}
     assert nodes['simulation'].name is None and nodes['recorder'].name == 'recorder'
 
 
 def test_what_is_said(started):
-    """The messages of the plan are logged."""
+    """Messages of the plan are logged when the launch starts."""
     said = [a.msg for a in started('simulation', record='bag', lock_step='false')
             if a.what == 'LogInfo']
     assert said[-1].startswith('record without lock_step: ')
@@ -155,9 +153,7 @@ def test_what_is_said(started):
     ('simulation', {}, {'motion_generator', 'imu_sensor', 'strapdown'}),
     ('replay', {'bag': 'old'}, {'player', 'strapdown'})])
 def test_ends(file, given, names, started):
-    """
-    The end of the run ends everything or the nodes only; a node that fails always ends everything.
-    """
+    """The end of the run ends the launch or only its nodes; a failed node ends the launch."""
     context = SimpleNamespace(is_shutdown=False)
     for shutdown in ('true', 'false'):
         actions = started(file, **given, shutdown=shutdown)
@@ -179,7 +175,7 @@ def test_ends(file, given, names, started):
 
 
 def test_replay(started):
-    """The nodes after the source, and the verb that plays into them."""
+    """replay starts the nodes downstream of the source, and the player in lock-step with them."""
     for source, names in (('imu', {'strapdown'}), ('truth', {'strapdown', 'imu_sensor'})):
         nodes = flat(started('replay', bag='old', source=source, namespace='left', loop='true',
                              before={'ros_namespace': '/fleet'}))
@@ -201,9 +197,7 @@ def included(launch, path, names):
 
 
 def test_misspelt_arguments_are_refused(started, launch):
-    """
-    Arguments given to the file itself are checked, from launch_arguments and the command line.
-    """
+    """Misspelt launch arguments are refused, from launch_arguments and from the command line."""
     path = resources.launch('simulation')
     assert started('simulation', event=included(launch, path, ['motion', 'launch-prefix']))
     with pytest.raises(ValueError, match="unknown launch argument 'moton'; the nearest known one "
@@ -212,7 +206,7 @@ def test_misspelt_arguments_are_refused(started, launch):
 
 
 def test_arguments_of_the_including_file_are_its_own(started, launch):
-    """A parent file may have an argument with a similar name, such as motions."""
+    """Arguments of a parent launch file are not checked, even if their names are similar."""
     assert started('simulation', event=included(launch, '/elsewhere/parent.launch.py',
                                                 ['motions']), before={'motions': 'x'})
     parent = included(launch, '/elsewhere/parent.launch.py', ['motions'])

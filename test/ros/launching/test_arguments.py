@@ -19,7 +19,7 @@ def shared(name):
 def test_motions_hold_a_motion_and_nothing_of_instruments():
     """Every shipped motion is in the table; none contains delays or errors."""
     moving = {name for name in CONFIG if 'motion' in shared(name)} - {'default'}
-    # This one uses tuned gyros, as its name says.
+    # This file uses tuned gyros, as its name states.
     assert set(arguments.MOTIONS) == moving - {'dtg_motion_2'}
     for name in arguments.MOTIONS:
         assert not {'gyro', 'accelerometer', 'sampling', 'output'} & set(shared(name))
@@ -27,7 +27,7 @@ def test_motions_hold_a_motion_and_nothing_of_instruments():
 
 
 def test_instruments_are_those_shipped():
-    """They are the files named imu_*, with one section, which a later /** overrides."""
+    """The instruments are the files imu_*, each with one section, which a later /** overrides."""
     assert set(arguments.INSTRUMENTS) == {name for name in CONFIG if name.startswith('imu_')}
     assert all(set(CONFIG[name]) == {'/**'} for name in arguments.INSTRUMENTS)
 
@@ -48,7 +48,7 @@ def test_a_misspelt_argument_names_the_nearest(known, name, near):
     ('rate_hz', 'fast', "rate_hz is 'fast'; expected a number"),
     ('tf', 'in', "tf is 'in'; expected one of none, truth, ins, aided (nearest: ins)")])
 def test_bad_values(name, text, says):
-    """The message contains argument, value and expectation."""
+    """An invalid value gives a message with argument, value and expectation."""
     texts = {one.name: one.default for one in arguments.SIMULATION}
     with pytest.raises(ValueError) as refused:
         arguments.read_values({**texts, name: text}, arguments.SIMULATION)
@@ -56,9 +56,7 @@ def test_bad_values(name, text, says):
 
 
 def test_values():
-    """
-    Arguments that are not given are '' or None; True is accepted with a capital, as ROS writes it.
-    """
+    """Arguments that are not given are '' or None; True may be capitalised, as ROS writes it."""
     texts = {one.name: one.default for one in arguments.SIMULATION}
     value = arguments.read_values({**texts, 'use_sim_time': 'True', 'rate_hz': '200'},
                                   arguments.SIMULATION)
@@ -70,13 +68,13 @@ def test_values():
     ('', []), ('motion_2', ['motion_2']), ('motion_2,imu_tactical_fog', None),
     ('motion_2 imu_tactical_fog', None), (' motion_2 ,  imu_tactical_fog', None)])
 def test_several_parameter_files(text, names):
-    """Separated by commas or spaces, in order."""
+    """Parameter files are separated by commas or spaces and keep their order."""
     names = ['motion_2', 'imu_tactical_fog'] if names is None else names
     assert arguments.parameter_files(text) == [str(resources.config(name)) for name in names]
 
 
 def test_a_file_with_a_space_in_its_name(tmp_path):
-    """The text is one path if such a file exists; a missing file is named."""
+    """A text that is the name of an existing file is one path; a missing file is named."""
     path = tmp_path / 'my own, really.yaml'
     path.write_text('')
     assert arguments.parameter_files(str(path)) == [str(path)]
@@ -86,7 +84,9 @@ def test_a_file_with_a_space_in_its_name(tmp_path):
 
 def test_presets(tmp_path, monkeypatch):
     """
-    By name or path; other kinds of files and misspelt names are refused with the nearest one.
+    A preset is found by name or path; other files and misspelt names are refused.
+
+    The message has the nearest name.
     """
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'own.yaml').write_text('')

@@ -1,4 +1,4 @@
-"""The parameters of a launched node as rclpy makes them from its arguments."""
+"""The parameters of a launched node, as rclpy reads them from its arguments."""
 
 import json
 import subprocess
@@ -24,7 +24,7 @@ print(json.dumps({name: getattr(one.value, 'tolist', lambda: one.value)()
 
 
 def test_wildcards_and_launch_arguments(tmp_path, monkeypatch):
-    """Precedence: defaults, files, a user's /** over the presets, launch arguments over all."""
+    """Precedence rises from defaults, presets and files (with /**) to launch arguments."""
     monkeypatch.setattr(plan, 'find_spec', lambda name: name)
     own, last = tmp_path / 'own.yaml', tmp_path / 'last.yaml'
     own.write_text(

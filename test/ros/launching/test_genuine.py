@@ -1,4 +1,4 @@
-"""The launch files in genuine launch, where it is installed: arguments, ends, exit codes."""
+"""The launch files run by the real launch, if installed: arguments, ends, exit codes."""
 
 import os
 import subprocess
@@ -31,7 +31,7 @@ sys.exit(service.run())
 
 
 def launched(*words, after_s=0.0):
-    """Include the launch file in another one; return its exit code and output."""
+    """Include the launch file in another one; return the exit code and the output."""
     ended = subprocess.run(
         [sys.executable, '-c', CODE, str(resources.launch('simulation')), str(after_s), *words],
         capture_output=True, text=True, check=False, timeout=120.0,
@@ -41,7 +41,7 @@ def launched(*words, after_s=0.0):
 
 @pytest.fixture
 def installed():
-    """Skip if the executables are not in the ament index."""
+    """Skip the test if the executables are not in the ament index."""
     from ament_index_python.packages import get_package_prefix, PackageNotFoundError
     try:
         get_package_prefix('ins_sim')
@@ -55,7 +55,7 @@ def installed():
     ('prefix:=uav1/', "frames.prefix is 'uav1/'; expected no slash at its ends"),
     ('rate_hz:=fast', "rate_hz is 'fast'; expected a number")])
 def test_refusals(word, sentence):
-    """One of our messages, exit code 1, no process started."""
+    """Refused arguments give one message, exit code 1, and no process."""
     code, said = launched(word)
     assert code == 1 and sentence in said
     assert 'process started' not in said and 'Traceback' not in said
@@ -75,7 +75,7 @@ def test_an_included_run_ends_alone(installed, ros_domain, tmp_path):
 
 @pytest.mark.live
 def test_bad_parameters_end_all(installed, ros_domain, tmp_path):
-    """For any value of shutdown everything ends, with an exit code other than 0."""
+    """For any value of shutdown, bad parameters end everything with an exit code other than 0."""
     bad = tmp_path / 'bad.yaml'
     bad.write_text('/**: {ros__parameters: {sampling.jitter_us: -5.0}}')
     code, said = launched('shutdown:=false', f'params_file:={bad}', after_s=100.0)

@@ -50,7 +50,9 @@ def named(made):
 @pytest.mark.parametrize('namespace', ['', 'left', 'fleet/left'])
 def test_the_launch_line(namespace):
     """
-    Motion, instrument, rate, prefix, recorder and aids reach the nodes that have these parameters.
+    Launch arguments reach all nodes that have the parameters they set.
+
+    They are motion, instrument, rate, prefix, recorder, clock and aiding.
     """
     made = simulation(namespace, motion='racetrack', imu='imu_tactical_mems', rate_hz='200.0',
                       use_sim_time='true', prefix='uav1', record='DIR', aided='true')
@@ -76,7 +78,7 @@ def test_the_launch_line(namespace):
 
 
 def test_no_arguments():
-    """Only the transforms differ from the defaults of the nodes; nothing else is set."""
+    """Without arguments only tf.source differs from the defaults of the nodes."""
     made = simulation()
     assert named(made) == [process.name for process in graph.PROCESSES]
     assert not made.files and not made.overrides_text
@@ -85,7 +87,7 @@ def test_no_arguments():
 
 
 def test_a_users_wildcard_counts(tmp_path):
-    """No launch file overrides the user's /**, with integers or floats; launch arguments do."""
+    """The user's /** overrides presets, with integers or floats; launch arguments override it."""
     own = tmp_path / 'own.yaml'
     own.write_text('/**:\n  ros__parameters:\n    rate_hz: 50\n    tf: {source: none}\n'
                    '    gyro: {errors: {angle_random_walk_deg_sqrt_h: [0.5, 0.5, 0.5]}}\n')
@@ -102,7 +104,7 @@ def test_a_users_wildcard_counts(tmp_path):
 
 @pytest.mark.parametrize('section', ['/**', '/**/imu_sensor', 'imu_sensor', '/*'])
 def test_launch_arguments_win_over_every_section(section, tmp_path):
-    """Launch arguments override node sections as well."""
+    """Launch arguments override sections of single nodes too."""
     own = tmp_path / 'own.yaml'
     own.write_text(f'{section}: {{ros__parameters: {{rate_hz: 50.0}}}}')
     made = simulation(params_file=str(own), rate_hz='200.0')
@@ -110,7 +112,7 @@ def test_launch_arguments_win_over_every_section(section, tmp_path):
 
 
 def test_files_in_their_order(tmp_path):
-    """The later file overrides the earlier one; both override the presets."""
+    """A later parameter file overrides an earlier one; both override the presets."""
     for name, rate in (('a', 50.0), ('b', 60.0)):
         (tmp_path / f'{name}.yaml').write_text(
             f'/**: {{ros__parameters: {{rate_hz: {rate}, motion.kind: static, seed: 3}}}}')
@@ -121,7 +123,7 @@ def test_files_in_their_order(tmp_path):
 
 
 def test_one_process():
-    """The executable simulation replaces the nodes, which keep their parameters."""
+    """With one_process the executable simulation replaces the nodes, with their parameters."""
     made = simulation('left', one_process='true', aided='true', record='bag', rate_hz='50')
     assert named(made) == ['recorder', 'simulation'] and made.named == {'recorder'}
     assert parameters(made, 'simulation')['aided'] is True
@@ -135,9 +137,7 @@ def test_one_process():
 @pytest.mark.parametrize('lock_step, waits, said', [
     ('', True, False), ('true', True, False), ('false', False, True)])
 def test_a_recorder_is_waited_for(lock_step, waits, said):
-    """
-    The generator waits for the recorder, unless lock_step:=false; then possible losses are stated.
-    """
+    """The generator waits for the recorder; with lock_step:=false possible losses are stated."""
     made = simulation(record='bag', lock_step=lock_step)
     assert parameters(made, 'motion_generator')['pacing.lock_step'] is waits
     assert (made.said == (plan.LOSSES,)) is said
@@ -145,7 +145,7 @@ def test_a_recorder_is_waited_for(lock_step, waits, said):
 
 
 def test_only_what_is_published_is_recorded(transforms):
-    """Lock-step waits for every recorded topic, so that unpublished topics are not recorded."""
+    """Unpublished topics are not recorded, because lock-step waits for every recorded topic."""
     def recorded(**given):
         return parameters(simulation(record='bag', **given), 'recorder')['record.topics']
 
@@ -158,7 +158,7 @@ def test_only_what_is_published_is_recorded(transforms):
 
 
 def test_without_tf2_msgs(transforms):
-    """One message replaces one from each node; with an explicit tf the nodes log it."""
+    """Without tf2_msgs the plan has one message; with an explicit tf each node logs its own."""
     transforms.clear()
     made = simulation()
     assert made.said == (plan.NO_TRANSFORMS,) and not made.defaults
@@ -181,7 +181,7 @@ def test_what_a_node_would_refuse_is_refused_before(given, says):
 
 
 def test_a_file_that_is_none(tmp_path):
-    """An invalid file is refused with the message of the offline commands."""
+    """An invalid parameter file is refused with the message of the offline commands."""
     path = tmp_path / 'a.yaml'
     path.write_text('/**: {ros__parameters: {')
     with pytest.raises(ValueError, match='a.yaml is not YAML: line 2'):
@@ -189,7 +189,7 @@ def test_a_file_that_is_none(tmp_path):
 
 
 def test_replay():
-    """The nodes after the source; an instrument only for a played truth."""
+    """replay has the nodes downstream of the source; an IMU only for a played truth."""
     for source, names in (('imu', ['strapdown']), ('truth', ['strapdown', 'imu_sensor'])):
         made, played = replay(source=source, rate_hz='50', prefix='uav1')
         assert named(made) == names and played is graph.REPLAYS[source]
@@ -210,7 +210,7 @@ def test_replay():
     ({}, ['--lock-step', 'strapdown']), ({'lock_step': 'false', 'rate': '2'}, ['--rate', '2.0']),
     ({'loop': 'true', 'use_sim_time': 'true'}, ['--lock-step', 'strapdown', '--loop', '--clock'])])
 def test_options_of_the_player(given, words):
-    """The options are those of the verb play."""
+    """The options of the player are those of the verb play."""
     texts = {one.name: one.default for one in arguments.REPLAY}
     value = plan.replay({**texts, 'bag': 'old', **given})[2]
     assert plan.play_options(value) == words

@@ -1,4 +1,4 @@
-"""The executable simulation as a process: parameters, names, services, and end."""
+"""The executable simulation as a process: parameters, names, services, and exit."""
 
 import signal
 
@@ -29,10 +29,7 @@ def chain(ros_domain, tmp_path):
 
 
 def lock_step(chain, domain, arguments, nodes):
-    """
-    Return {topic: {stamp: bytes}} of a run of some executables, one of them containing the
-    generator.
-    """
+    """Return {topic: {stamp: bytes}} of a run of some executables, one with the generator."""
     listener = Listener(domain, HEARD)
     try:
         master = [chain.start(node, {}, arguments) for node in nodes][-1]
@@ -46,7 +43,11 @@ def lock_step(chain, domain, arguments, nodes):
 
 
 def test_the_bytes_of_three_processes_by_one_parameter_file(chain, ros_domain, tmp_path):
-    """A file with node sections works; ROS launch files name the process, not its nodes."""
+    """
+    One parameter file with node sections gives the bytes of three processes.
+
+    The launch file of ROS names the process, not its nodes.
+    """
     path = tmp_path / 'parameters.yaml'
     path.write_text(FILE)
     arguments = ['--params-file', str(path)]
@@ -58,7 +59,7 @@ def test_the_bytes_of_three_processes_by_one_parameter_file(chain, ros_domain, t
 
 def test_names_services_and_company(chain, ros_domain):
     """
-    Nodes and services have the names of separate ones; a second sensor beside them is reported.
+    Nodes and services have the names of separate ones; a second imu_sensor is reported.
 
     Ctrl-C, even repeated, ends the process with code 0 and no traceback.
     """
@@ -104,6 +105,7 @@ def test_names_services_and_company(chain, ros_domain):
       'pacing.required': '[strapdown, camera]'}, 4, 'no acknowledgement on sim/ack from camera'),
 ])
 def test_what_is_wrong_is_one_sentence(parameters, code, sentence, chain):
+    """Invalid parameters give one message, exit code 2; a missing consumer exit code 4."""
     simulation = chain.start('simulation', parameters)
     assert simulation.wait(GUARD_S) == code, chain.text(simulation)
     text = chain.text(simulation)
@@ -112,7 +114,7 @@ def test_what_is_wrong_is_one_sentence(parameters, code, sentence, chain):
 
 
 def test_a_signal_at_any_time(chain):
-    """While it imports, while it starts, and while it runs."""
+    """A signal during imports, at the start or while running ends the process with code 0."""
     started = [chain.start('simulation', {'aided': True, 'rate_hz': 200.0}) for _ in range(3)]
     for process in started:
         wait_handlers(process)

@@ -1,4 +1,4 @@
-"""`running_simulation` lets tests of other filters step a simulation."""
+"""`running_simulation` lets tests of a user's filter step a simulation."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ from support.places import ROOT
 
 pytest.importorskip('rclpy')
 
-# A filter under test, as a process or as a class: it answers each reading with its stamp.
+# A filter under test, as a process or as a class: it acknowledges each reading.
 FILTER = '''
 from geometry_msgs.msg import Vector3Stamped
 import rclpy
@@ -44,7 +44,7 @@ def vector(v):
 
 
 def test_readings_and_truth_are_those_of_the_offline_run(start_simulation):  # noqa: F811
-    """Stamps and readings agree to the bit; then there is no further step."""
+    """Stamps and readings equal those of the offline run to the bit; then no step remains."""
     sim = start_simulation('motion_2', VALUES, topics=['ins/odometry', 'truth/imu'])
     steps = list(sim.steps())
     run = ins_sim.simulate(ins_sim.read_settings('motion_2', {**VALUES, 'source': 'stream'}))
@@ -57,7 +57,7 @@ def test_readings_and_truth_are_those_of_the_offline_run(start_simulation):  # n
 
 
 def test_two_at_once_do_not_hear_each_other():
-    """Each has its own domain; a service call changes only one of them."""
+    """Two simulations have separate domains; a service call changes only one of them."""
     from std_srvs.srv import SetBool
     values = {'rate_hz': 100.0, 'motion.kind': 'racetrack'}
     options = {'topics': ['gnss/fix'], 'aided': True}
@@ -74,7 +74,7 @@ def test_two_at_once_do_not_hear_each_other():
 
 @pytest.mark.live
 def test_a_filter_that_is_a_process():
-    """It joins at any time; every step waits for its answer."""
+    """A filter process may join at any time; every step then waits for its answer."""
     from geometry_msgs.msg import Vector3Stamped
     with RunningSimulation((), VALUES, answers={'filter/rate': Vector3Stamped}) as sim:
         with subprocess.Popen([sys.executable, '-c', FILTER], env=sim.environment,
@@ -89,7 +89,9 @@ def test_a_filter_that_is_a_process():
 
 def test_a_filter_that_is_a_node_of_the_test():
     """
-    The same in one process, with a lost reading now and then; a missing filter gives one message.
+    A filter that is a node of the test is waited for too, with some readings lost.
+
+    A missing filter gives one message.
     """
     from geometry_msgs.msg import Vector3Stamped
     names = {'__name__': 'filter'}
@@ -116,10 +118,11 @@ def test_a_filter_that_is_a_node_of_the_test():
     ({'values': {'rate': 3.0}}, "unknown parameter 'rate'; the nearest known one is 'rate_hz'"),
 ])
 def test_what_is_wrong_is_one_sentence(arguments, sentence):
+    """Unknown or unpublished topics and unknown parameters raise a ValueError."""
     with pytest.raises(ValueError, match=sentence):
         with RunningSimulation(**arguments):
             pass
-    # Nothing remains.
+    # No process and no file remain.
     with RunningSimulation((), VALUES) as sim:
         assert sim.step().imu is not None
 

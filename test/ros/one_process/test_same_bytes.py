@@ -48,7 +48,7 @@ def apart(values):
         generator, ended = fed.nodes['motion_generator'], []
         generator._finish = ended.append
         if values.get('aided'):
-            # The graph contains no publishers of the bus.
+            # The graph does not contain the publishers of the test bus.
             fed.nodes['aided_navigator']._joined = True
         while not ended:
             generator._advance(None)
@@ -90,7 +90,7 @@ def _keep(messages, data):
 
 @pytest.mark.parametrize('name', RUNS)
 def test_the_bytes_of_separate_nodes(name, ros_domain):
-    """In lock-step every message on every topic has the same bytes."""
+    """In lock-step every message on every topic has the bytes of separate nodes."""
     expected, sent = apart(RUNS[name]), together(RUNS[name])
     for topic, messages in expected.items():
         if topic not in ('sim/ack', '/clock'):

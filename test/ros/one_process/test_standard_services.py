@@ -1,4 +1,4 @@
-"""The services of simulation_interfaces, built from its public definitions if it is missing."""
+"""The services of simulation_interfaces, built from its public definitions if necessary."""
 
 import importlib.util
 import json
@@ -36,7 +36,7 @@ DEFINITIONS = {
                                'uint8 SCOPE_STATE = 2\nuint8 SCOPE_SPAWNED = 4\n'
                                'uint8 SCOPE_ALL = 255\nuint8 scope\n---\nResult result\n',
 }
-# A client that knows only the standard: it calls the services in order and prints the answers.
+# A client that knows only the standard: it calls the services and prints the answers.
 CLIENT = """
 import json, sys
 import rclpy
@@ -102,7 +102,7 @@ print('FOUND ' + json.dumps(out), flush=True)
 @pytest.mark.slow
 @pytest.mark.parametrize('executable', ['simulation', 'motion_generator'])
 def test_somebody_who_knows_the_standard(executable, chain, tmp_path):
-    """Features, states, steps and resets; unknown states and scopes are refused with a message."""
+    """A standard client reads features and state, steps and resets; bad requests get a message."""
     environment = {} if importlib.util.find_spec('simulation_interfaces') else build_interfaces(
         tmp_path / 'built', 'simulation_interfaces', DEFINITIONS, 'service_msgs')
     for name, value in environment.items():
@@ -128,7 +128,7 @@ def test_somebody_who_knows_the_standard(executable, chain, tmp_path):
 
 
 def test_a_release_that_is_too_old_is_said_once(monkeypatch):
-    """A missing type is named; the generator runs without these services."""
+    """If a type is missing it is named, and the generator runs without these services."""
     from types import ModuleType
     from ins_sim.ros.lock_step import standard_services
     from support.hostile.fed_nodes import FedNodes

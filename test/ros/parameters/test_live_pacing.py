@@ -1,4 +1,4 @@
-"""The real-time factor set while the generator runs: no burst, no pause, from the next sample."""
+"""The real-time factor set while the generator runs: next sample, no burst, no pause."""
 
 import pytest
 from support.hostile.fed_nodes import FedNodes
@@ -15,7 +15,7 @@ TICK_S = 1e-3
 
 
 class Generator(FedNodes):
-    """A generator with a simulated clock; ``sent(ticks)`` advances time in ms."""
+    """A generator with a simulated clock; ``sent(ticks)`` lets time pass, ms."""
 
     def __init__(self, **parameters):
         super().__init__({'motion_generator': {**RUN, **parameters}})
@@ -27,7 +27,7 @@ class Generator(FedNodes):
         return self
 
     def sent(self, ticks):
-        """Return the number of samples sent in some ms, at most one burst a ms."""
+        """Return the number of samples sent in some ms, at most one burst per ms."""
         counts = []
         for _ in range(ticks):
             before = self.node._next
@@ -37,7 +37,7 @@ class Generator(FedNodes):
         return counts
 
     def set(self, factor):
-        """Set the factor; return '' or the reason for a refusal."""
+        """Set the factor; return '' or the reason for the refusal."""
         return ask(self.node, {FACTOR: factor})[0]
 
 
@@ -45,7 +45,7 @@ class Generator(FedNodes):
 @pytest.mark.parametrize('factor', [0.1, 0.5, 2, 8.0])
 def test_time_goes_on_without_a_burst(factor, ticks, ros_domain):
     """
-    Wherever in a period the factor is changed, no two samples are within 1 ms, and none is late.
+    After a change at any phase no samples are closer than 1 ms, and none is late.
 
     The number of samples in a second follows the new factor, and then the old one.
     """
@@ -98,7 +98,7 @@ def test_a_factor_of_zero_needs_lock_step(ros_domain):
 
 @pytest.mark.parametrize('value', ['fast', -1.0, float('nan'), float('inf'), [1.0], True, 1e7])
 def test_nonsense_is_refused(value, ros_domain):
-    """One message names the parameter; the pace does not change."""
+    """An invalid factor gives one message with the parameter; the pace does not change."""
     with Generator() as generator:
         assert sum(generator.sent(100)) == 10
         reason = generator.set(value)
@@ -107,7 +107,7 @@ def test_nonsense_is_refused(value, ros_domain):
 
 
 def test_before_the_run_and_after_a_pause(ros_domain):
-    """The factor applies from the first sample on, and in a pause nothing is sent."""
+    """The factor applies from the first sample on, and nothing is sent during a pause."""
     with Generator() as generator:
         assert generator.set(4) == ''
         assert 'from the first sample on' in generator.logs['motion_generator'].kept[-1]
@@ -119,7 +119,7 @@ def test_before_the_run_and_after_a_pause(ros_domain):
 
 
 def test_the_pace_of_a_clock(monkeypatch):
-    """The rest of a period is stretched: 0.3 of one at factor 1 is 0.3 of one at factor 10."""
+    """The rest of a period is stretched: 0.3 of a period stays 0.3 of one at a factor of 10."""
     now = [0.0]
     monkeypatch.setattr(pacing, 'time', type('Clock', (), {'monotonic': lambda: now[0]}))
     pace = pacing.Pace(1.0, DT_S)

@@ -1,4 +1,4 @@
-"""Parameters set while the nodes run: node objects without DDS, called like the services."""
+"""Parameters set while nodes run: node objects without DDS, called like the services."""
 
 import math
 
@@ -21,7 +21,7 @@ OURS = {'source': 'motion', **MOTION}
 
 
 def readings(parameters, at=None, change=None, count=600):
-    """Return the IMU messages of a flight during which parameters are set at sample ``at``."""
+    """Return the IMU messages of a flight in which parameters are set at sample ``at``."""
     with Flown(imu_sensor=parameters) as flown:
         flown.fly(count if at is None else at)
         if at is not None:
@@ -36,8 +36,7 @@ def readings(parameters, at=None, change=None, count=600):
     ids=['perfect', 'noise', 'own motion', 'tuned gyros', 'tuned gyros, own motion'])
 def test_a_bias_counts_from_the_instant_that_is_said(more, from_k, ros_domain):
     """
-    Before the logged instant the bytes are those of the old bias, from it on those of the new
-    bias.
+    A new bias applies from exactly the logged instant on; the bytes before are the old ones.
 
     Tuned gyros that evaluate their own motion are computed 256 readings ahead, which the log
     states.
@@ -51,10 +50,7 @@ def test_a_bias_counts_from_the_instant_that_is_said(more, from_k, ros_domain):
 
 
 def test_biases_and_drop_outs_at_once_and_back(ros_domain):
-    """
-    Several parameters are set in one request and set back; drop-outs are those of a run with that
-    rate.
-    """
+    """Several parameters are set in one request and set back; the drop-outs have the set rate."""
     change = {BIAS: 7, FORCE_BIAS: [1.0, 2.0, 3.0], LOST: 0.5}
     perfect, _ = readings({})
     with Flown(imu_sensor={}) as flown:
@@ -76,7 +72,7 @@ def test_biases_and_drop_outs_at_once_and_back(ros_domain):
 
 
 def test_a_fault_is_injected_changed_and_taken_away(ros_domain):
-    """Channel and bias are set by parameters; the service keeps the fault that it forced."""
+    """Channel and bias of a fault are set by parameters; the service keeps the fault it forced."""
     from support.nodes.asked import service_of
     from types import SimpleNamespace
     with Flown(imu_sensor=DTG) as flown:
@@ -107,7 +103,7 @@ def test_a_fault_is_injected_changed_and_taken_away(ros_domain):
 
 
 def test_outages_and_a_jump_of_the_receiver(ros_domain):
-    """Starts may be set alone: such an outage lasts until its end is set."""
+    """If only the start of an outage is set, it lasts until its end is set."""
     status = topics.GNSS_FIX.reader().numbers
     with Flown(gnss={'gnss.rate_hz': 10.0}) as flown:
         node = flown.nodes['gnss']
@@ -136,7 +132,7 @@ def test_outages_and_a_jump_of_the_receiver(ros_domain):
 
 
 def test_drop_outs_of_the_velocity_meter(ros_domain):
-    """Drop-outs apply from the next window that ends."""
+    """Drop-outs of the meter apply from the next window that ends."""
     own = {'attack_angle': 'none', 'window.cycles': 10, 'limits.height_max_m': 2e4}
     with Flown(velocity_meter=own) as flown:
         node = flown.nodes['velocity_meter']

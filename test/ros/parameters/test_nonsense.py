@@ -1,4 +1,4 @@
-"""Invalid requests to running nodes: one message each, and no node ends or changes."""
+"""Invalid requests to running nodes give one message each; no node ends or changes."""
 
 import math
 
@@ -40,7 +40,7 @@ NONSENSE = [
 
 @pytest.fixture(scope='module')
 def running():
-    """Four running nodes."""
+    """Yield four running nodes."""
     from ins_sim.ros.process.domains import own_domain
     with own_domain(), Flown(imu_sensor={}, gnss={}, velocity_meter={}, strapdown={}) as flown:
         flown.fly(20)
@@ -49,7 +49,7 @@ def running():
 
 @pytest.mark.parametrize('node, name, value, sentence', NONSENSE)
 def test_nonsense_is_one_sentence(node, name, value, sentence, running):
-    """By either service the old value stays, nothing ends, and no change is counted."""
+    """Either service refuses an invalid value: the old one stays, and no change is counted."""
     one = running.nodes[node]
     settings, types = one.settings, {n: p.type_ for n, p in one._parameters.items()}
     sentence = name + sentence if sentence[0] in ' [' else sentence
@@ -65,7 +65,7 @@ def test_nonsense_is_one_sentence(node, name, value, sentence, running):
 
 
 def test_of_several_at_once_one_bad_one_refuses_all(running):
-    """In one atomic request all are refused; one after the other the valid ones are set."""
+    """In an atomic request one invalid value refuses all; otherwise the valid ones are set."""
     node = running.nodes['imu_sensor']
     assert ask_at_once(node, {BIAS: 5.0, FORCE_BIAS: 'x'}).startswith(f"{FORCE_BIAS} is 'x'")
     assert value_of(node, BIAS) == [0.0] * 3
@@ -77,7 +77,7 @@ def test_of_several_at_once_one_bad_one_refuses_all(running):
 
 
 def test_messages_that_no_tool_sends(running):
-    """An unknown type, a deletion, an empty request, and parameters of ROS itself."""
+    """Unknown types, deletions, empty requests and wrong types of ROS parameters are refused."""
     from rcl_interfaces.msg import Parameter, ParameterValue
     node = running.nodes['imu_sensor']
     strange = Parameter(name=BIAS, value=ParameterValue(type=42))
@@ -105,7 +105,7 @@ VALUES = (st.booleans() | st.integers(-2 ** 63, 2 ** 63 - 1) | NUMBERS
 @settings(max_examples=150, deadline=None,
           suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_whatever_is_asked_is_taken_or_refused_in_a_sentence(data, running):
-    """Any value of any parameter: accepted values are as declared, and the nodes keep running."""
+    """Any value of any parameter is accepted with its declared type or refused; nodes run on."""
     name = data.draw(st.sampled_from(sorted(running.nodes)))
     node = running.nodes[name]
     names = st.sampled_from([*type(node.settings).SETTABLE, 'rate_hz', 'nothing'])
@@ -119,7 +119,7 @@ def test_whatever_is_asked_is_taken_or_refused_in_a_sentence(data, running):
 
 
 def test_changes_are_counted_on_diagnostics(running):
-    """Each request that changed something counts once."""
+    """A request that changes parameters counts once in /diagnostics."""
     node = running.nodes['imu_sensor']
 
     def count():

@@ -1,4 +1,4 @@
-"""SetParameters over DDS, in the process of all nodes: genuine services, readings that change."""
+"""SetParameters over DDS in the process of all nodes: real services, readings that change."""
 
 import re
 
@@ -14,7 +14,7 @@ BIAS = 'gyro.errors.bias_deg_h'
 
 
 def test_parameters_of_a_running_simulation(ros_domain, tmp_path):
-    """A bias appears in the readings from the logged instant on; invalid values change nothing."""
+    """A bias is in the readings from the logged instant on; invalid values change nothing."""
     from rcl_interfaces.msg import Parameter, ParameterValue
     from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
     from rclpy.parameter import Parameter as Named

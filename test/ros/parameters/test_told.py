@@ -1,4 +1,4 @@
-"""The line that a node logs at its start: what it simulates, or that it is ideal."""
+"""The line that each node logs at its start: what it simulates, or that it is ideal."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.ros.process.told import told
@@ -14,7 +14,7 @@ def lines(names=(), *assignments):
 
 
 def test_defaults():
-    """A racetrack, and an IMU without any error."""
+    """With defaults the nodes log a racetrack, and an IMU without any error."""
     said = lines()
     assert said['motion_generator'] == ('motion racetrack, truth at 100 Hz from 0 s to 3600 s, in '
                                         'real time')
@@ -30,7 +30,7 @@ def test_defaults():
 
 
 def test_an_instrument_with_delays():
-    """Values are in the units of data sheets, one value if the axes are equal."""
+    """Values are logged in the units of data sheets, as one value if the axes are equal."""
     said = lines(['racetrack', 'delays_2_1_3us', 'imu_tactical_mems'], 'rate_hz:=200.0',
                  'accelerometer.errors.bias_ug:=[1.0, 2.0, -3.0]', 'sampling.jitter_us:=20.0')
     assert said['imu_sensor'] == (
@@ -53,12 +53,12 @@ def test_an_instrument_with_delays():
     (['gnss_model.use:=true', 'meter_model.use:=false'], 'aided_navigator', 'aided by GNSS'),
     (['outages.start_s:=[1.0]', 'outages.end_s:=[2.0]'], 'gnss', 'up), outages: 1')])
 def test_what_is_not_the_default(assignments, node, part):
-    """Each value that differs from the default is logged."""
+    """Each of these values is logged if it differs from the default."""
     assert part in lines((), *assignments)[node]
 
 
 def test_every_node_that_simulates_has_a_line():
-    """The recorder and the process around the nodes simulate nothing and log no line."""
+    """Every node has a line, except the recorder and the process of all nodes."""
     for node in set(ALL_NODES) - {'recorder', 'simulation'}:
         line = told(node, ALL_NODES[node]())
         assert line and line.isprintable()

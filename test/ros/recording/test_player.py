@@ -69,7 +69,7 @@ def mixed_bag(path, count=200):
 
 
 def test_played_and_recorded_again(chain, tmp_path):
-    """The same bytes in the same order with the same offered QoS, in a namespace as well."""
+    """A bag that is played and recorded has the same bytes, order and QoS, in a namespace too."""
     path = mixed_bag(tmp_path / 'bag')
     recorder = chain.start_verb('record', 'imu', 'words', 'latched', '-o', tmp_path / 'again',
                                 '--ros-args', '-r', '__ns:=/robot')
@@ -96,8 +96,8 @@ def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
     Messages are spread over the time in which they were recorded, and /clock with them.
 
     A player that does not wait would send a second of messages within milliseconds. On a busy
-    machine the first ones may be late and others follow at once; up to half of them is accepted
-    here.
+    machine the first ones may be late and others follow immediately; up to half of them is
+    accepted here.
     """
     path = mixed_bag(tmp_path / 'bag')
     talker = Talker(ros_domain)
@@ -127,7 +127,7 @@ def test_time_is_counted_and_shown(ros_domain, chain, tmp_path):
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_signals(number, chain, tmp_path):
-    """Exit code 0 in the middle of an endless loop."""
+    """A signal in the middle of an endless loop ends the player with exit code 0."""
     path = mixed_bag(tmp_path / 'bag', 20)
     player = chain.start_verb('play', path, '--loop', '--wait', '0', '--topics', 'imu')
     chain.wait_text(player, 'begins again')
@@ -150,7 +150,7 @@ def original(chain, tmp_path):
 
 def test_lock_step_gives_the_original_run(chain, tmp_path):
     """
-    Played from the truth through imu_sensor, or from its readings: the same bytes of odometry.
+    Played in lock-step from truth or readings, the odometry has the original bytes.
 
     The processes are those of replay.launch.py, in a namespace.
     """
@@ -175,7 +175,7 @@ def test_lock_step_gives_the_original_run(chain, tmp_path):
 
 
 def test_loops_are_seen_as_jumps_back(ros_domain, chain, tmp_path):
-    """In lock-step each round is a run: the strapdown reports the jump and starts anew."""
+    """In lock-step each round of a loop is a run: the strapdown reports the jump and restarts."""
     path = original(chain, tmp_path)
     listener = Listener(ros_domain, (topics.INS_ODOMETRY,))
     strapdown = chain.start('strapdown', PARAMETERS)
@@ -213,7 +213,7 @@ def test_on_fault_stop_ends_the_loop(chain, tmp_path):
 
 
 def test_what_is_refused(chain, tmp_path):
-    """Exit code 2 and one message."""
+    """Invalid arguments of play give one message and exit code 2."""
     path = mixed_bag(tmp_path / 'bag', 5)
     for words, sentence in (
             ((tmp_path / 'none',), 'none does not exist; expected a bag'),
@@ -226,9 +226,7 @@ def test_what_is_refused(chain, tmp_path):
 
 
 def test_a_long_silence_is_said_with_the_way_out(chain, tmp_path):
-    """
-    First messages logged at 0 and others in 1970: the player logs the gap and does not just wait.
-    """
+    """If nothing was logged for years the player reports the wait and proposes --start."""
     path, pack = tmp_path / 'bag', topics.IMU_RAW.writer().pack
     with BagWriter(path) as bag:
         bag.add_topic('imu', topics.IMU)

@@ -1,4 +1,4 @@
-"""The recorder: any topic of any type and quality of service."""
+"""The recorder: topics of any type and quality of service."""
 
 import signal
 import time
@@ -19,7 +19,7 @@ SECOND = 1_000_000_000
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path):
-    """Every message of every topic once, at its own stamp, with the bytes that others receive."""
+    """A lock-step run is recorded completely: every message once, with stamp and bytes."""
     listener = Listener(ros_domain, topics.DATA)
     path = tmp_path / 'bag'
     recorder = chain.start_verb('record', *listener.raw, '-o', path, '--storage', storage)
@@ -44,7 +44,7 @@ def test_a_lock_step_run_is_recorded_whole(storage, ros_domain, chain, tmp_path)
 
 
 def test_all_topics_in_lock_step(chain, tmp_path):
-    """Sample 0 is acknowledged when no new topic has appeared for a second: none is missed."""
+    """With all topics, sample 0 is acknowledged 1 s after the last new topic: none is missed."""
     parameters = {'rate_hz': 100.0, 'duration_s': 2.0, 'pacing.real_time_factor': 0.0,
                   'pacing.required': '[strapdown, recorder]'}
     recorder = chain.start_verb('record', '--all', '-o', tmp_path / 'bag')
@@ -61,7 +61,7 @@ def test_all_topics_in_lock_step(chain, tmp_path):
 
 
 def test_a_stamp_before_the_epoch(talker, chain, tmp_path):
-    """Jitter may make the first stamp negative; it is logged at zero, as by simulate --bag."""
+    """A stamp below zero, due to jitter, is logged at zero, as by simulate --bag."""
     from sensor_msgs.msg import Imu
     path, writer = tmp_path / 'bag', topics.IMU_RAW.writer()
     publisher = talker.publisher(Imu, 'imu/data_raw')
@@ -79,9 +79,9 @@ def test_a_stamp_before_the_epoch(talker, chain, tmp_path):
 
 def test_foreign_topics_as_they_appear(talker, chain, tmp_path):
     """
-    Foreign types, one unknown to the bags too; best effort; latched; a topic that appears late.
+    Foreign and unknown types, best effort, latched and late topics are recorded.
 
-    Bytes, types, definitions and offered qualities are those of the publishers.
+    Bytes, types, definitions and offered QoS are those of the publishers.
     """
     from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
     from nav_msgs.msg import Goals
@@ -149,10 +149,9 @@ def test_our_names_in_other_hands(talker, chain, tmp_path):
 
 def test_all_topics_namespace_and_times(talker, chain, tmp_path):
     """
-    With --all hidden topics are left out; messages without a stamp are logged at the stamps
-    around.
+    With --all, hidden topics are left out; a relative name is in the recorder's namespace.
 
-    A relative name is in the namespace of the recorder.
+    Messages without a stamp are logged at the stamps around them.
     """
     from std_msgs.msg import String
     imu, text = talker.imu('/robot/imu'), talker.publisher(String, '/robot/words')
@@ -175,7 +174,9 @@ def test_all_topics_namespace_and_times(talker, chain, tmp_path):
 
 def test_received_times_and_repeats(talker, chain, tmp_path):
     """
-    log_time received: time of arrival. Equal stamped messages count once, equal strings each time.
+    With log_time received the log time is that of arrival.
+
+    Equal stamped messages are recorded once, equal strings each time.
     """
     from std_msgs.msg import String
     imu, text = talker.imu(), talker.publisher(String, 'words')
@@ -195,7 +196,7 @@ def test_losses_are_counted(talker, chain, tmp_path):
     """
     With a queue of ten that is not emptied in time, recorded plus lost equals sent.
 
-    The stamps give the same count if twenty steps or more show the usual one.
+    The stamps give the same count if twenty or more steps have the usual length.
     """
     imu = talker.imu()
     recorder = chain.start('recorder', {'record.topics': '[imu]', 'record.depth': 10,
@@ -218,7 +219,7 @@ def test_losses_are_counted(talker, chain, tmp_path):
 
 def test_stamps_of_two_clocks(talker, chain, tmp_path):
     """
-    6000 messages in a burst up to the end: every one is in the bag or counted as lost.
+    Of 6000 messages in a burst each is in the bag or counted as lost.
 
     One topic is stamped since boot, the other since 1970; a split of ten seconds of either clock
     gives one file.

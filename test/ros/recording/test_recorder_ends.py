@@ -17,7 +17,7 @@ KINDS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none')]
     ('mcap', ('--max-duration', '1.0')), ('sqlite3', ('--max-duration', '1.0')),
     ('mcap', ('--max-size', '0.05')), ('sqlite3', ('--max-size', '0.05'))])
 def test_splits(storage, options, talker, chain, tmp_path):
-    """Split by time or by size: complete together, and each file can be read alone."""
+    """Split by time or by size the files are complete together, and each can be read alone."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 *options)
@@ -40,7 +40,7 @@ def test_splits(storage, options, talker, chain, tmp_path):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, tmp_path):
-    """A signal while messages arrive: exit code 0, and all reported messages are in the bag."""
+    """A signal while messages arrive gives exit code 0, and the bag has all reported messages."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 '--compression', compression)
@@ -55,7 +55,7 @@ def test_signals_leave_a_whole_bag(number, storage, compression, talker, chain, 
 @pytest.mark.parametrize('numbers', [(signal.SIGINT,), (signal.SIGTERM,),
                                      (signal.SIGINT, signal.SIGINT)])
 def test_signals_whenever_they_come(numbers, chain, tmp_path):
-    """While it imports, starts, records or ends: code 0, and no bag or a complete one."""
+    """A signal at any time gives exit code 0, and no bag or a complete one."""
     for k in range(6):
         path = tmp_path / f'bag_{k}'
         recorder = chain.start_verb('record', '--all', '-o', path)
@@ -86,7 +86,7 @@ def wait_started(chain, recorder, k):
 
 @pytest.mark.parametrize('storage, compression', KINDS)
 def test_killed_in_the_middle(storage, compression, talker, chain, tmp_path, capsys):
-    """SIGKILL: all but the last second is there, and info reports a truncated bag."""
+    """After SIGKILL all but the last second is in the bag, which info reports as truncated."""
     imu = talker.imu()
     recorder = chain.start_verb('record', 'imu', '-o', tmp_path / 'bag', '--storage', storage,
                                 '--compression', compression)

@@ -1,4 +1,4 @@
-"""The whole chain at 1 kHz in real time, recorded: nothing is lost."""
+"""The whole chain at 1 kHz in real time is recorded without loss."""
 
 import re
 import signal
@@ -22,7 +22,7 @@ DEPTH = 10_000
 
 def test_nothing_is_lost_at_1_khz(ros_domain, tmp_path):
     """
-    Twelve topics in real time: no gap in the numbers of the publishers or in the stamps.
+    Twelve topics at 1 kHz have no gap in the numbers of the publishers or in the stamps.
 
     Samples before discovery are not counted; from the first recorded one of a topic on, all are
     there, to the last. Ten minutes of the same, and the CPU time, are printed by

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.live
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """Return a folder on a file system of 3 MB, or skip."""
+    """Return a folder on a file system of 3 MB; skip the test if there is none."""
     folder = tmp_path / 'small'
     folder.mkdir()
     mounted = subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=3m', 'tmpfs', folder],
@@ -29,7 +29,7 @@ def small_disk(tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_full_disk(storage, small_disk, ros_domain, tmp_path):
-    """Exit code 3, one message, and a readable bag with the reported number of messages."""
+    """A full disk gives exit code 3, one message, and a bag with the reported messages."""
     talker, chain = Talker(ros_domain), Chain(ros_domain, tmp_path)
     path = small_disk / 'bag'
     try:
@@ -64,7 +64,7 @@ def refused(chain, *words):
 
 
 def test_what_is_refused(ros_domain, tmp_path):
-    """Exit code 2 and one message; existing files do not change."""
+    """Invalid arguments of record give one message and exit code 2; files are unchanged."""
     chain = Chain(ros_domain, tmp_path)
     old = tmp_path / 'old'
     old.mkdir()
@@ -88,7 +88,7 @@ def test_what_is_refused(ros_domain, tmp_path):
 
 
 def test_force_replaces_a_bag(ros_domain, tmp_path):
-    """The old bag stays until the new one is complete."""
+    """With --force the old bag is kept until the new one is complete."""
     chain, talker = Chain(ros_domain, tmp_path), Talker(ros_domain)
     path = tmp_path / 'bag'
     try:
@@ -116,7 +116,7 @@ def test_force_replaces_a_bag(ros_domain, tmp_path):
 
 
 def test_a_parameter_file_serves_every_node(ros_domain, tmp_path):
-    """The section of the recorder is read by ROS, ignored by the offline command, and checked."""
+    """The section of the recorder is read by ROS, ignored by offline commands, and checked."""
     chain = Chain(ros_domain, tmp_path)
     path = tmp_path / 'p.yaml'
     path.write_text('/**:\n  ros__parameters: {rate_hz: 50.0}\n/**/recorder:\n  ros__parameters: '

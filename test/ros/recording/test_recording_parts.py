@@ -1,4 +1,4 @@
-"""The parts of recorder and player that need no ROS: numbers, times, the first sample."""
+"""Parts of recorder and player without ROS: message numbers, times, the first sample."""
 
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.messages import topics
@@ -26,10 +26,10 @@ def imu(stamp_ns):
     ([1, 1, 2, 2, 5, 3, 6], 2, 2, 0),
     # A publisher that restarts before the graph has reported it.
     ([1, 2, 3, 1, 2, 3, 4], 1, 0, 0),
-    # On a topic that is late by one, messages counted as lost that still arrive stay counted.
+    # If a topic is out of order by one, a message counted as lost that arrives stays counted.
     ([1, 3, 2, 4], 1, 1, 0)])
 def test_gaps(numbers, publishers, lost, before):
-    """Without loss nothing is counted, for any interleaving."""
+    """For any interleaving of publishers, only lost messages are counted as lost."""
     gaps = Gaps()
     gaps.publishers = publishers
     for number in numbers:
@@ -38,14 +38,14 @@ def test_gaps(numbers, publishers, lost, before):
 
 
 def test_without_numbers_losses_are_unknown():
-    """Some middleware does not number messages."""
+    """Without message numbers, which some middleware lacks, losses are unknown."""
     gaps = Gaps()
     gaps.take(None)
     assert not gaps.known and gaps.lost == 0
 
 
 def test_the_time_of_a_run():
-    """The newest stamp, running on; late topics do not turn it back, a restarted run does."""
+    """The time of a run follows the newest stamp and runs on; only a restart turns it back."""
     clock = RunClock()
     assert clock.now(5) is None
     assert clock.hear(imu(100 * SECOND), 10) == 100 * SECOND
@@ -59,16 +59,14 @@ def test_the_time_of_a_run():
 @pytest.mark.parametrize('data', [b'', b'\x00\x01\x00\x00\x00', b'\x00\x00' + imu(5)[2:],
                                   imu(-SECOND)])
 def test_stamps_that_no_bag_can_hold(data):
-    """Too short, of the other byte order, before 1970: they do not change the clock."""
+    """Messages that are too short, big-endian or before 1970 do not change the clock."""
     clock = RunClock()
     assert clock.hear(data, 1) is None and clock.now(2) is None
 
 
 @pytest.fixture
 def bag(tmp_path):
-    """
-    Return the path of a bag: strings, truth from before the first reading on, readings, acks.
-    """
+    """Return the path of a bag: strings, truth that begins before the readings, readings, acks."""
     path = tmp_path / 'bag'
     truth = topics.TRUTH_ODOMETRY
     with BagWriter(path) as writer:
@@ -88,7 +86,9 @@ def bag(tmp_path):
 
 def test_the_first_sample_of_lock_step(bag):
     """
-    Older messages are sent first, newer ones and those without stamp afterwards; none is missing.
+    Messages before the first sample are sent first, later ones and those without stamp after.
+
+    No message is missing.
     """
     playing = Playing(bag, Options(required=('strapdown',)))
     assert playing.driver == '/imu/data_raw' and playing.left_out == ['/sim/ack']
@@ -115,14 +115,14 @@ def test_the_first_sample_of_lock_step(bag):
     ({'topics': ('sim/ack',), 'required': ('strapdown',)}, 'has no message on a topic'),
     ({'required': ('strapdown',), 'window': 0}, '--window is 0; expected 1 to 2000')])
 def test_options_that_are_refused(options, sentence, bag):
-    """One message names option, value and expectation."""
+    """Invalid options give one message with option, value and expectation."""
     with pytest.raises(ValueError) as error:
         Playing(bag, Options(**options))
     assert sentence in str(error.value) and '\n' not in str(error.value)
 
 
 def test_log_times_that_clock_cannot_say(tmp_path):
-    """Beyond 2038 messages are played, but with /clock they are refused before the first one."""
+    """Log times beyond 2038 are played, but with /clock they are refused at the start."""
     path = tmp_path / 'bag'
     with BagWriter(path) as writer:
         writer.add_topic('imu', topics.IMU)
@@ -138,7 +138,7 @@ def test_log_times_that_clock_cannot_say(tmp_path):
 
 
 def test_start_and_duration(bag):
-    """Both count from the first message of the played topics; the ends are included."""
+    """Start and duration count from the first message of the played topics, ends included."""
     playing = Playing(bag, Options(topics=('imu/data_raw',), start_s=1.0, duration_s=3.0))
     assert [t // SECOND for _, t, _ in playing.messages()] == [3, 4, 5, 6]
     playing.close()
@@ -152,16 +152,16 @@ def stamps_with_losses(count, lost):
 @pytest.mark.parametrize('stamps, missing, step_ns', [
     (stamps_with_losses(1000, ()), 0, 10**6),
     (stamps_with_losses(1001, range(1, 1000, 3)), 333, 10**6),
-    # 42 % of the samples, in runs of overflowing queues.
+    # 42 % of the samples are lost, in runs as of overflowing queues.
     (stamps_with_losses(10000, [k + j for k in range(10, 9900, 100) for j in range(42)]), 4158,
      10**6),
-    # A pause is no hole, nor is a run that restarts.
+    # Neither a pause nor a restart is a loss.
     ([*range(0, 10**9, 10**7), *range(10**12, 10**12 + 10**9, 10**7)], 0, 10**7),
     ([*range(0, 10**9, 10**7), *range(0, 10**9, 10**7)], 0, 10**7),
     # Stamps jitter by a tenth of the period; one of ten samples is lost.
     ([k * 10**7 + (k * 7919 % 1000 - 500) * 1000 for k in range(2000) if k % 10], 199, None)])
 def test_holes(stamps, missing, step_ns):
-    """Holes are counted by the usual step of the stream itself."""
+    """Missing stamps are counted by the usual step of the stream itself."""
     holes = Holes()
     for stamp_ns in stamps:
         holes.take(stamp_ns)
@@ -170,7 +170,7 @@ def test_holes(stamps, missing, step_ns):
 
 
 def test_holes_of_what_is_not_steady():
-    """Events, a few messages, and alternating stamps of two clocks have no rate."""
+    """Events, a few messages, and alternating stamps of two clocks have no usual step."""
     events, turns, few = Holes(), Holes(), Holes()
     t_ns = 0
     for k in range(1000):

@@ -1,4 +1,4 @@
-"""The announced run: node objects that learn the epoch before, during or never."""
+"""The announcement of a run: node objects learn the epoch before, during or never."""
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -26,9 +26,7 @@ class Announced(HostileFlight):
         super().__init__(1, more)
 
     def know(self, count, others=1):
-        """
-        Set the number of known publishers of sim/run, and of all other topics, in every node.
-        """
+        """Set the number of known publishers of sim/run and of other topics in every node."""
         for node in self.fed.nodes.values():
             node.count_publishers = lambda name: count if name == '/sim/run' else others
 
@@ -48,7 +46,7 @@ def flight(ros_domain):
 
 
 def test_the_generator_announces_before_the_truth(ros_domain):
-    """Epoch, start, rate and end are announced before anything else is sent."""
+    """The generator announces epoch, start, rate and end before it sends anything else."""
     heard = []
     values = {**COMMON, 'time.epoch': 'fixed', 'start_s': 5.0, 'duration_s': 7.0}
     nodes = FedNodes({'motion_generator': values})
@@ -63,8 +61,9 @@ def test_the_generator_announces_before_the_truth(ros_domain):
 
 def test_what_comes_before_the_announcement_waits(flight):
     """
-    Nothing is lost and nothing is acknowledged: the first readings are processed with the
-    announcement.
+    Messages that come before the announcement wait: none is lost, none is acknowledged.
+
+    The first readings are processed with the announcement.
     """
     flight.know(1)
     flight.good(20)
@@ -78,9 +77,7 @@ def test_what_comes_before_the_announcement_waits(flight):
 
 
 def test_motion_time_is_that_of_the_epoch(ros_domain):
-    """
-    An outage from 0.25 to 0.35 s of motion time applies to the corresponding stamps, as offline.
-    """
+    """An outage from 0.25 to 0.35 s of motion time applies to the stamps of these instants."""
     with Announced(gnss={**GNSS}) as flight:
         flight.know(1)
         flight.announce(RunAnnouncement(-SECOND, SECOND, 100.0, 60 * SECOND))
@@ -94,7 +91,7 @@ def test_motion_time_is_that_of_the_epoch(ros_domain):
 
 
 def test_where_nobody_announces_motion_time_is_the_stamp(flight):
-    """As with a recorded or a real IMU; each node logs it once."""
+    """Without an announcement, as of a real IMU, motion time is the stamp; each node logs it."""
     flight.know(0)
     flight.good(30)
     assert flight.newest(topics.INS_ODOMETRY) == 29 * SECOND // 100
@@ -104,9 +101,7 @@ def test_where_nobody_announces_motion_time_is_the_stamp(flight):
 
 
 def test_readings_may_come_before_the_generator_is_found(flight):
-    """
-    The navigators wait 5 s for the generator of a sensor that has found it, and then for none.
-    """
+    """The navigators wait 5 s for the generator of a sensor that has found it, then no longer."""
     flight.know(0)
     flight.good(1)
     assert flight.newest(topics.INS_ODOMETRY) is not None
@@ -126,7 +121,11 @@ def test_readings_may_come_before_the_generator_is_found(flight):
 
 
 def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
-    """After 30 s one message is logged, and the first samples are not lost."""
+    """
+    A publisher of sim/run that is silent is waited for 30 s; the first samples are kept.
+
+    One message is logged.
+    """
     flight.know(1)
     flight.good(2)
     flight.fed.clock.pass_by(30.0)
@@ -137,6 +136,7 @@ def test_a_publisher_that_says_nothing_is_waited_for_so_long(flight):
 
 
 def test_more_than_the_queue_holds_is_counted(ros_domain):
+    """Of 12 messages that wait for sim/run with a depth of 5 the 7 lost ones are counted."""
     with Announced(imu_sensor={**COMMON, 'topics.depth': 5}) as flight:
         flight.know(1)
         flight.good(12)
@@ -148,7 +148,7 @@ def test_more_than_the_queue_holds_is_counted(ros_domain):
 
 
 def test_another_generator_starts_all_anew(flight):
-    """Its epoch is taken with one message; the same run announced again gives none."""
+    """The epoch of another generator gives one message; a repeated announcement gives none."""
     flight.announce(RunAnnouncement(0, 0, 100.0, 60 * SECOND))
     flight.good(50)
     flight.announce(RunAnnouncement(0, 0, 100.0, 90 * SECOND))
@@ -169,7 +169,9 @@ def test_another_generator_starts_all_anew(flight):
      '10.010000000 s, 0.010000000 s after the end of the run')], ids=('before', 'after'))
 def test_stamps_of_no_announced_run_are_named(run, sentence, flight):
     """
-    Nodes that depend on the epoch log one message each; the strapdown navigates nevertheless.
+    For stamps of no announced run the nodes that need the epoch log one message each.
+
+    The strapdown navigates nevertheless.
     """
     flight.announce(run)
     if run is not RUN:
@@ -183,6 +185,7 @@ def test_stamps_of_no_announced_run_are_named(run, sentence, flight):
 
 
 def test_what_is_no_announcement_is_dropped(flight):
+    """A malformed sim/run is dropped with a message, and the node continues."""
     flight.fed.nodes['gnss']._announced.take(b'\x00\x01\x00\x00')
     assert 'DiagnosticArray of 4 bytes' in flight.said('gnss')
     flight.good(5)
@@ -196,12 +199,14 @@ def test_what_is_no_announcement_is_dropped(flight):
     ({'pacing.real_time_factor': 10.0, 'publish_clock': True}, 'with a real_time_factor of 10 the '
      'stamps do not follow the wall clock: other nodes need use_sim_time: true and /clock')])
 def test_the_generator_says_who_needs_the_clock(values, says):
+    """If stamps differ from the wall clock, the generator states who needs /clock."""
     said = clock_needed(build(MotionGeneratorSettings, values))
     assert (says in said) if says else not said
     assert ('which publish_clock' in said) == ('lock-step' in said)
 
 
 def test_two_clocks_are_named(ros_domain):
+    """The generator reports a second publisher of /clock."""
     with FedNodes({'motion_generator': {**COMMON, 'publish_clock': True}}) as nodes:
         generator = nodes.nodes['motion_generator']
         generator.count_publishers = lambda name: 2 if name == '/clock' else 1

@@ -1,4 +1,4 @@
-"""All published covariances, live and in a bag, are positive; none is zero."""
+"""All published covariances, live and in a bag, are positive definite; no variance is zero."""
 
 from collections import defaultdict
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support.aided_runs import command
 
-# For each type of message: where its covariances begin among its doubles, and their size.
+# For each message type: offsets of covariances among its doubles, and their size.
 PLACES = {topics.IMU: ((4, 3), (16, 3), (28, 3)), topics.ODOMETRY: ((7, 6), (49, 6)),
           topics.FIX: ((3, 3),), topics.TWIST: ((6, 6),), topics.MAGNETIC: ((3, 3),),
           topics.PRESSURE: ((1, 1),)}
@@ -44,14 +44,18 @@ class Covariances:
             assert kind in (2, 3)
         for first, size in PLACES[TYPES[name]]:
             if doubles[first] == -1.0:
-                # REP-145: not measured.
+                # REP-145: the quantity is not measured.
                 assert name == topics.IMU_RAW.name and first == 4
             else:
                 self._found[name, first].append(
                     np.reshape(doubles[first:first + size * size], (size, size)))
 
     def check(self, expected, least):
-        """Check all covariances; expected: topics that must have at least so many."""
+        """
+        Check all covariances.
+
+        expected: topics that must have been seen; least: number of messages of each.
+        """
         assert {name for name, _ in self._found} == expected
         for (name, first), matrices in self._found.items():
             assert len(matrices) >= least
@@ -74,7 +78,11 @@ def magnetic(monkeypatch):
 
 @pytest.mark.parametrize('name', ['eskf', 'conventional'])
 def test_in_a_bag(name, tmp_path, magnetic):
-    """A complete aided flight; a filter without covariance states that it is unknown."""
+    """
+    In the bag of an aided flight covariances are positive; unknown ones are marked.
+
+    They are unknown for a filter without a covariance.
+    """
     path, found = tmp_path / 'bag', Covariances()
     gnss = [f'gnss_model.use:={str(name == "eskf").lower()}', f'filter:={name}']
     assert command(tmp_path, '--bag', str(path), flight=(
@@ -87,7 +95,7 @@ def test_in_a_bag(name, tmp_path, magnetic):
 
 
 def test_of_live_nodes(ros_domain, magnetic):
-    """Of all nodes in this process, with the truth of the generator."""
+    """The covariances of all live nodes, and of the truth, are positive."""
     pytest.importorskip('rclpy')
     from support.hostile.flight import HostileFlight, NODES
     found = Covariances()

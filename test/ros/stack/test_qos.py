@@ -11,7 +11,7 @@ pytest.importorskip('rclpy')
 
 @pytest.fixture
 def make_node(ros_domain):
-    """Return a function that makes a node of ours in this process from its parameters."""
+    """Return a function that makes a node of ins_sim in this process from its parameters."""
     import rclpy
     from rclpy.parameter import Parameter
     from ins_sim.ros.main import _load
@@ -30,7 +30,7 @@ def make_node(ros_domain):
 
 
 def wait_for(condition):
-    """Wait until DDS has discovered something; return it."""
+    """Wait until DDS discovery has found something; return it."""
     end = time.monotonic() + GUARD_S
     while not (found := condition()):
         assert time.monotonic() < end
@@ -40,9 +40,7 @@ def wait_for(condition):
 
 @pytest.mark.live
 def test_a_reader_sees_the_overrides(make_node, talker):
-    """
-    Publishers and subscriptions have the reliability of the parameters; others are unchanged.
-    """
+    """A reader sees the reliability set by the parameters; other settings are unchanged."""
     from rclpy.qos import ReliabilityPolicy
     own = {f'qos_overrides./{name}.{key}': value for name, key, value in (
         ('ins/odometry', 'publisher.reliability', 'best_effort'),
@@ -67,7 +65,7 @@ def test_a_reader_sees_the_overrides(make_node, talker):
 
 @pytest.mark.live
 def test_a_best_effort_publisher_is_heard(make_node, talker):
-    """Subscriptions are made anew when a best-effort publisher appears."""
+    """When a best-effort publisher appears, subscriptions are made anew and receive it."""
     from nav_msgs.msg import Odometry
     from rclpy.executors import SingleThreadedExecutor
     from sensor_msgs.msg import Imu
@@ -140,7 +138,7 @@ def test_what_is_handed_over_in_memory_is_not_subscribed_to(make_node, talker):
 
 
 def import_odometry():
-    """Return the class, imported only where ROS is available."""
+    """Return the message class, imported only where ROS is available."""
     from nav_msgs.msg import Odometry
     return Odometry
 
@@ -154,14 +152,18 @@ def import_odometry():
     ('imu/data_raw.subscription.reliability', 'best-effort', "is 'best-effort'; expected one of "
      'reliable, best_effort')])
 def test_an_override_that_cannot_be(key, value, sentence, make_node):
-    """One message with place, key, value and expectation, before anything is published."""
+    """
+    An invalid override gives one message before anything is published.
+
+    It has place, key, value and expectation.
+    """
     with pytest.raises(ValueError, match=f'^qos_overrides./{key}:? {sentence}$'):
         make_node('strapdown', **{f'qos_overrides./{key}': value})
 
 
 @pytest.mark.live
 def test_overrides_of_other_nodes_are_told_once(make_node):
-    """A parameter file may serve all nodes; /diagnostics names the node."""
+    """Overrides for other nodes, as in a file for all nodes, are reported once in /diagnostics."""
     node, said = make_node('strapdown', **{'qos_overrides./no/topic.publisher.depth': 3}), []
     node.get_logger = lambda: Told(said)
     sent = []

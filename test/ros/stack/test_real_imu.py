@@ -21,7 +21,7 @@ ODOMETRY = topics.INS_ODOMETRY.reader(((0, 7), (43, 49), (7, 43)))
 
 
 def test_the_messages_are_those_of_the_stage():
-    """Odometry and fix for every solution, no error topic, and all samples acknowledged."""
+    """Every solution gives Odometry and fix, without errors; samples are acknowledged."""
     imu, fixes = vehicle(length_s=40.0)
     said = play(stage_of(), imu, as_sent(fixes))
     frame = MapFrame(Datum(49.8, 5.7, 90.0), True)
@@ -42,7 +42,7 @@ def test_the_messages_are_those_of_the_stage():
 
 
 def test_a_stage_fed_by_the_node_has_the_bits_of_navigate():
-    """The stage in the node has the bits of navigate."""
+    """The stage in the node gives the bits of navigate."""
     imu, fixes = vehicle(length_s=40.0)
     other = play(stage_of(), imu, as_sent(fixes))
     with RealImuGraph() as graph:
@@ -55,7 +55,9 @@ def test_a_stage_fed_by_the_node_has_the_bits_of_navigate():
 
 def test_levelled_alone_without_fixes():
     """
-    Heading 0 along x of odom, sigma pi; no fix, no map -> odom; one warning states what helps.
+    Without fixes the IMU is only levelled: heading 0 along x of odom with sigma pi.
+
+    There is no fix and no map -> odom; one warning states what would help.
     """
     imu, _ = vehicle(rest_s=70.0, length_s=70.0, rate_hz=25.0)
     with RealImuGraph(**{'tf.source': 'ins'}) as graph:
@@ -71,7 +73,7 @@ def test_levelled_alone_without_fixes():
 
 
 def test_map_to_odom_where_the_heading_is_known():
-    """With position and heading map -> odom is constant from the start on."""
+    """With position and heading, map -> odom is constant from the start on."""
     imu, fixes = vehicle(length_s=40.0)
     with RealImuGraph(**{'tf.source': 'ins'}) as graph:
         graph.send(messages_of(imu, fixes))
@@ -102,7 +104,7 @@ def test_a_mounting_from_tf_is_waited_for():
 
 
 def same_bits_within(graph, said):
-    """Assert that the fixes of the node are solutions, to the rounding of a rotation and back."""
+    """Assert that the fixes of the node are the solutions, to the rounding of two rotations."""
     read = topics.INS_FIX.reader(((0, 3),)).read
     for solved in said.solved[::50]:
         lat, lon, height = read(graph.heard[topics.INS_FIX.name][solved.t_ns])[1]
@@ -114,7 +116,7 @@ def same_bits_within(graph, said):
     ('auto', 'is assumed to be base_link: set mounting.rpy_deg'),
     ('tf', 'expected a transform from base_link to')])
 def test_a_frame_without_a_transform(source, sentence):
-    """After two seconds of readings one message is logged, and the node keeps waiting for TF."""
+    """If TF has no transform one message is logged after 2 s, and the node keeps waiting."""
     imu, fixes = vehicle(length_s=12.0)
     with RealImuGraph(**{'mounting.source': source}) as graph:
         graph.send(messages_of(imu, fixes, 'imu_frame'))
@@ -123,7 +125,7 @@ def test_a_frame_without_a_transform(source, sentence):
 
 
 def test_a_frame_that_tf_does_not_know():
-    """The nearest frame is named, and nothing is aligned."""
+    """For a frame that TF does not have the nearest one is named, and nothing is aligned."""
     imu, _ = vehicle(length_s=12.0)
     with RealImuGraph() as graph:
         graph.transforms('base_link', 'imu_link', quaternion.IDENTITY)
@@ -133,7 +135,11 @@ def test_a_frame_that_tf_does_not_know():
 
 
 def test_services_answer_in_a_sentence():
-    """~/align and ~/reset before, during and after an alignment, and with truth."""
+    """
+    ~/align and ~/reset answer in one sentence before, during and after an alignment.
+
+    They do so with initial.source truth too.
+    """
     imu, fixes = vehicle(rest_s=25.0, length_s=60.0)
     messages = messages_of(imu, fixes)
     with RealImuGraph(**{'alignment.longest_s': 8.0, 'initial.heading': 'given',
@@ -164,7 +170,11 @@ def test_services_answer_in_a_sentence():
 
 
 def test_damaged_messages_on_every_input():
-    """Truncated, reversed and random bytes: faults with a message, no node ends, no NaN."""
+    """
+    Damaged messages on every input give faults; no node ends, and no NaN is published.
+
+    They are truncated or have random bytes.
+    """
     imu, fixes = vehicle(length_s=30.0, rate_hz=25.0)
     rng, messages = np.random.default_rng(5), []
     good = messages_of(imu, fixes)
@@ -205,7 +215,7 @@ def test_the_shipped_parameters():
 
 def test_a_damped_channel_follows_fix_and_pressure():
     """
-    Height by fixes, or by pressure from the start on, which rises by 10 m 12 s after it.
+    A damped channel follows a rise of 10 m in fixes or pressure to within 0.2 m.
 
     After 40 s, eight time constants of 5 s, the triple pole leaves (1 + 8 + 32) exp(-8) of 10 m,
     0.14 m.
@@ -232,7 +242,7 @@ def test_a_damped_channel_follows_fix_and_pressure():
 
 
 def replace_height(fix, t_ns, rise):
-    """Return a fix higher by the rise at its stamp."""
+    """Return a fix with a height increased by the rise at its stamp."""
     return fix._replace(height=fix.height + float(np.interp(fix.t_ns, t_ns, rise)))
 
 
@@ -246,7 +256,7 @@ def test_truth_as_the_vertical_channel_is_replaced_and_said():
 
 
 def test_an_accelerometer_in_g_is_named_and_its_unit_can_be_set():
-    """Nothing is aligned; units.force g accepts it."""
+    """An accelerometer in g is named and not aligned; units.force g converts it."""
     imu, fixes = vehicle(length_s=40.0)
     in_g = messages_of(replace(imu, f=imu.f / 9.80665), fixes)
     with RealImuGraph() as graph:

@@ -1,4 +1,4 @@
-"""A bag of a real or made IMU played live into strapdown: the numbers of ``ins_sim navigate``."""
+"""A bag of a real or synthetic IMU played live into strapdown gives the numbers of navigate."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def played(chain, domain, bag, last_ns, parameters):
     """Play a bag in lock-step into strapdown; return {topic: {stamp_ns: doubles}}."""
     listener = Listener(domain, (topics.INS_ODOMETRY, topics.INS_FIX))
     node = chain.start('strapdown', {**LIVE, **parameters})
-    # The play takes less than a second: messages before discovery would be lost.
+    # Playing takes less than a second: messages before discovery would be lost.
     listener.poll_until(lambda: all(map(listener.node.count_publishers, listener.heard)))
     player = chain.start_verb('play', bag, '--lock-step', 'strapdown', '--topics',
                               parameters.get('inputs.imu', '/' + IMU),
@@ -60,7 +60,11 @@ def parameters_of(datum):
 
 
 def test_a_made_bag(chain, ros_domain, tmp_path):
-    """An artificial record of a car at rest that drives off, as imu/data_raw and gnss/fix."""
+    """
+    A synthetic car that rests and then drives, as imu/data_raw and gnss/fix, is navigated.
+
+    The numbers are those of navigate within 1e-9.
+    """
     imu, fixes = vehicle(rest_s=8.0, length_s=25.0, rate_hz=50.0)
     bag, datum = tmp_path / 'bag', (49.9, 5.7, 90.0)
     with BagWriter(bag) as writer:
@@ -79,7 +83,7 @@ def test_a_made_bag(chain, ros_domain, tmp_path):
      {'mounting.rpy_deg': [90.0, 0.0, -90.0]}),
     ('umn_thor_fl75_first90s_sqlite3', '/imu/data', '/gps/fix', (45.3, -93.2, 250.0), {})])
 def test_the_recorded_bags(name, imu, fix, datum, values, shared_data, chain, ros_domain):
-    """Two real robots, as in test/navigation/standalone, but over DDS."""
+    """Bags of two real robots give the numbers of navigate over DDS within 1e-9."""
     bag = shared_data / 'rosbags' / name
     result = ins_sim.navigate(bag, {**OFFLINE, **values})
     record, _ = read(bag, imu, fix)

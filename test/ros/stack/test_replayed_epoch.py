@@ -1,4 +1,4 @@
-"""Playing the bag of an offline run: the nodes take the epoch from it and give the same bits."""
+"""Playing the bag of an offline run: the nodes read the epoch from it and give the same bits."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.cli.main import main
@@ -18,7 +18,7 @@ SOURCES = (topics.TRUTH_ODOMETRY.name, topics.TRUTH_IMU.name)
 
 def test_noise_is_that_of_the_recorded_run(chain, ros_domain, tmp_path):
     """
-    Errors are drawn by motion time, so the readings are those of the bag bit for bit.
+    Errors are drawn by motion time, so the readings have the bits of those in the bag.
 
     Only two topics are requested; the announcement is played before them nevertheless.
     """

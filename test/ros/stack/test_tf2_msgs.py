@@ -1,4 +1,4 @@
-"""Our transforms over DDS, received as tf2_msgs by a foreign node."""
+"""Our transforms over DDS, received as tf2_msgs by a node of another package."""
 
 import importlib.util
 import json
@@ -15,7 +15,7 @@ from support.live import GUARD_S
 pytest.importorskip('rclpy')
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
-# A node as a user writes it, with the QoS of a tf2 listener; it prints the received transforms and
+# A node as a user writes it, with the QoS of a tf2 listener. It prints the received transforms and
 # then publishes one of our frames until it is ended.
 LISTENER = """
 import json, time
@@ -58,7 +58,7 @@ def definitions():
 
 def test_a_listener_of_tf_hears_us(chain, tmp_path):
     """
-    Frames, poses and static transforms; a second publisher of a frame is reported, not before.
+    A listener receives frames, poses and static transforms; a second publisher is reported.
 
     A recorder logs every transform at its own stamp, and static ones as latched.
     """
@@ -100,5 +100,5 @@ def test_a_listener_of_tf_hears_us(chain, tmp_path):
         assert 'transient_local' in bag.topics['/tf_static'].qos
     assert {one[1] for name, _, one in found if name == '/tf_static'} == {
         'uav1/odom', 'uav1/imu_link'}
-    # The other node uses a zero stamp.
+    # The other node uses a stamp of zero.
     assert len(found) > 200 and all(log_ns == one[2] for _, log_ns, one in found)

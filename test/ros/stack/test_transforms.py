@@ -1,4 +1,4 @@
-"""Live transforms, node objects without DDS: frames, sources and second publishers."""
+"""Live transforms, node objects without DDS: frames, sources, and second publishers."""
 
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import SECOND
@@ -14,7 +14,7 @@ POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
 
 
 class Placed(HostileFlight):
-    """A flight of all nodes with a source of TF; ``tf`` collects (topic, node's transforms)."""
+    """A flight of all nodes with a source of TF; ``tf`` collects (topic, transforms of a node)."""
 
     def __init__(self, source, **more):
         shared = {'tf.source': source, 'frames.prefix': 'uav1'}
@@ -37,7 +37,7 @@ class Placed(HostileFlight):
                 if name == '/tf' and frames == [f'uav1/{parent}', f'uav1/{child}']}
 
     def said(self, node):
-        """Return what a node has logged."""
+        """Return the log messages of a node."""
         return '\n'.join(self.fed.logs[node].kept)
 
     def look(self):
@@ -55,7 +55,7 @@ def pairs_of(flight):
     ('none', set()), ('ins', {('uav1/odom', 'uav1/base_link')}),
     ('aided', {('uav1/odom', 'uav1/base_link'), ('uav1/map', 'uav1/odom')})])
 def test_who_places_what(source, moves, ros_domain):
-    """Static transforms once at the first stamp; moving ones with every solution."""
+    """Static transforms are sent once at the first stamp, moving ones with every solution."""
     with Placed(source, gnss={'lever_arm_m': [1.0, 2.0, 3.0]}) as flight:
         flight.good(100)
         assert pairs_of(flight) == moves
@@ -109,7 +109,11 @@ def test_every_aided_solution_has_its_odom(ros_domain):
 
 
 def test_without_a_strapdown_the_aided_navigator_goes_on(ros_domain):
-    """One message after 5 s; it acknowledges before the odom has arrived again."""
+    """
+    Without ins/odometry the aided navigator logs one message after 5 s and continues.
+
+    It acknowledges before the odom has arrived again.
+    """
     with Placed('aided', velocity_meter={'attack_angle': 'none'}) as flight:
         flight.good(10)
         strapdown = flight.fed.nodes['strapdown']
@@ -132,7 +136,7 @@ def test_without_a_strapdown_the_aided_navigator_goes_on(ros_domain):
     ('ins', 'strapdown', 'uav1/odom', 'uav1/base_link'),
     ('aided', 'aided_navigator', 'uav1/map', 'uav1/odom')])
 def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domain):
-    """Another tf.source, another localization, or a second vehicle with the same prefix."""
+    """A second publisher of a frame, such as another tf.source, is named with both parents."""
     with Placed(source) as flight:
         flight.good(10)
         flight.fed.bus.put('/tf', TransformWriter((parent, child)).pack(0, POSE))
@@ -147,6 +151,7 @@ def test_two_sources_of_a_frame_are_named(source, node, parent, child, ros_domai
 
 
 def test_bytes_that_are_no_transform_are_named(ros_domain):
+    """Malformed bytes on /tf are reported with the topic."""
     with Placed('ins') as flight:
         flight.fed.bus.put('/tf', b'\x00\x01')
         flight.look()
@@ -154,7 +159,11 @@ def test_bytes_that_are_no_transform_are_named(ros_domain):
 
 
 def test_guided_by_the_free_ins(ros_domain):
-    """ins/odometry, in odom, steers: odom is constant in map, where the INS started."""
+    """
+    Guidance by ins/odometry requires the frames odom and base_link of the vehicle.
+
+    odom is constant in map, at the place where the INS started.
+    """
     steered = {**COMMON, 'motion.kind': 'guided', 'duration_s': 0.0, 'time.epoch_s': 0,
                'guidance.topic': 'ins/odometry', 'frames.prefix': 'uav1'}
     with Placed('none') as flight:

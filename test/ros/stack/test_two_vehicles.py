@@ -1,4 +1,4 @@
-"""Two vehicles in two namespaces with two prefixes and two epochs in one graph."""
+"""Two vehicles in one graph, with separate namespaces, frame prefixes and epochs."""
 
 import importlib.util
 import time
@@ -32,7 +32,7 @@ def runs_of(listener):
 
 def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
     """
-    No message of one vehicle is used by the other; the nodes learn the epoch of their generator.
+    No node uses a message of the other vehicle; each learns the epoch of its own generator.
 
     With ROS from PyPI, which has no tf2_msgs, each node logs this once and runs without
     transforms.
@@ -49,7 +49,7 @@ def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
                     node, {**VALUES, **more, 'frames.prefix': f'uav{number}'},
                     ['-r', f'__ns:=/{name}'])
         ends = [process for (_, node), process in started.items() if node == 'motion_generator']
-        # While one ends the other continues.
+        # While one vehicle ends the other continues.
         for listener in listeners.values():
             listener.poll_until(lambda: [other.poll() for other in listeners.values()] and all(
                 end.poll() is not None for end in ends))
@@ -77,6 +77,6 @@ def test_each_vehicle_has_its_frames_and_its_time(ros_domain, chain):
     run, = runs['right']
     assert before_ns - 10**6 < run.first_stamp_ns < time.time_ns()
     assert right[0] == run.first_stamp_ns and run.end_ns == 4 * SECOND
-    # The same flight: the epoch changes only the stamps.
+    # The flights are equal: the epoch changes only the stamps.
     for topic in HEARD:
         assert [*heard['left'][topic.name].values()] == [*heard['right'][topic.name].values()]

@@ -1,4 +1,4 @@
-"""Two vehicles, two namespaces, two prefixes, one bag, read by other programs."""
+"""One bag of two vehicles with two namespaces and prefixes, read by other programs."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics
@@ -25,7 +25,7 @@ def test_the_bag_of_two_vehicles(chain, tmp_path):
     The bag has no holes, each message has the frames of its vehicle; other programs read it.
 
     As in docs/how_to/recipes/two_vehicles.md. Lock-step does not wait for the recorder, because it
-    serves two generators: messages before it found a topic are missing.
+    serves two generators: messages sent before it found a topic are missing.
     """
     path = tmp_path / 'bag'
     names = [f'/{vehicle}/{topic.name}' for vehicle in VEHICLES for topic in RECORDED]
@@ -54,13 +54,13 @@ def test_the_bag_of_two_vehicles(chain, tmp_path):
 
 
 def start(chain, vehicle, prefix):
-    """Start the nodes of a vehicle, and return its generator."""
+    """Start the nodes of a vehicle; return its generator."""
     return [chain.start(node, {**VALUES, 'frames.prefix': prefix}, ['-r', f'__ns:=/{vehicle}'])
             for node in ('strapdown', 'imu_sensor', 'motion_generator')][-1]
 
 
 def others_read(bag, counts):
-    """Run the installed programs; skip at the first that is not installed."""
+    """Run the installed programs on the bag; skip the test at the first missing one."""
     for name, findings in bag_tools.LINTERS.items():
         assert findings(bag) == [], name
     pairs = [(f'/{v}/truth/odometry', f'/{v}/ins/odometry') for v in VEHICLES]

@@ -44,10 +44,10 @@ def test_round_trip(name, triad):
     """
     Three-hour records of each preset give N within 5 %, B within 20 %, K within 30 %.
 
-    The exception is in SHOWN. The first of nine records has all errors on. A record of three axes
-    has so few long intervals that B scatters by up to 12 % and K by up to 20 % from record to
-    record (printed). The root mean square over the nine records is therefore compared with the
-    bounds, which are at least four of its standard deviations.
+    Coefficients that three hours do not show are left out (SHOWN). The first of nine records has
+    all errors on. A record of three axes has so few long intervals that B scatters by up to 12 %
+    and K by up to 20 % from record to record (printed). The root mean square over the nine records
+    is therefore compared with the bounds, which are at least four of its standard deviations.
     """
     settings = preset_triads(name)[triad == 'accelerometer']
     model = triad_model(settings, 1.0 / RATE)
@@ -68,10 +68,11 @@ def test_round_trip(name, triad):
 
 def test_ring_laser_shows_floor_and_walk_in_weeks():
     """
-    Sixty days of navigation_rlg, one reading per minute, give N, B and K within the bounds above.
+    Sixty days of navigation_rlg, one reading per minute, give N, B and K within these bounds.
 
-    In three hours the Allan deviation of the gyro only falls to 0.0023 deg/h at the longest tau,
-    because of white noise. The floor of 0.001 deg/h and the random walk appear from four hours on.
+    The bounds are 5 % for N, 20 % for B, 30 % for K. In three hours the deviation of the gyro only
+    falls to 0.0023 deg/h at the longest tau, because of white noise. The floor of 0.001 deg/h and
+    the random walk appear from four hours on.
     """
     model = triad_model(preset_triads('navigation_rlg')[0], 60.0)
     found = np.array([ratios(model, noise_record(model, run, 'weeks', 1.0 / 60.0, 86400),
@@ -153,7 +154,7 @@ def test_averaging_times_are_whole_intervals():
 
 
 def test_bad_records_are_refused():
-    """Records that are too short or invalid raise an error of one sentence."""
+    """Records that are too short or invalid are refused with one message."""
     with pytest.raises(ValueError, match='has 5 samples; expected at least 40'):
         allan.estimate_deviation(np.zeros(5), 10.0)
     with pytest.raises(ValueError, match='NaN or infinity'):

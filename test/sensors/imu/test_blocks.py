@@ -47,7 +47,7 @@ def pushed(imu, truth):
 
 
 def as_list(samples):
-    """Return ImuSamples in the form of the readings of ``push``, with lists for vectors."""
+    """Return ImuSamples in the form of the readings of ``push``, with lists as vectors."""
     parity = [None] * len(samples) if samples.parity is None else samples.parity.tolist()
     return list(zip(samples.t_ns.tolist(), samples.omega.tolist(), samples.f.tolist(), parity))
 
@@ -87,7 +87,7 @@ def test_any_cutting_gives_the_readings_of_single_pushes(kind, truth_rate):
 
 
 def spoilt(truth, k, what):
-    """Return a Truth record whose sample k is unusable."""
+    """Return a Truth record whose sample k is invalid."""
     arrays = {name: values.copy() for name, values in truth.arrays().items()}
     if what == 'repeat':
         arrays['t_ns'][k] = arrays['t_ns'][k - 1]
@@ -130,7 +130,7 @@ def test_a_fault_is_that_of_single_pushes(kind, what):
 
 
 def test_rotors_that_run_away_lose_no_reading():
-    """A fault of the instrument (diverging rotors) comes with all readings before it."""
+    """If the rotors diverge the fault comes with all readings before it."""
     unstable = {**TUNED, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'}
     with pytest.warns(UserWarning, match='unstable'):
         make, truth = sensor_and_truth(unstable, count=100)
@@ -139,7 +139,7 @@ def test_rotors_that_run_away_lose_no_reading():
         pair = one.pair.pair
 
         def settle(w, pair=pair):
-            # The nutation grows by exp(0.0745) a sample: it overflows after 62 of them.
+            # The nutation grows by exp(0.0745) per sample: it overflows after 62 samples.
             pair.state = ((1e306, 0.0, 1e306, 0.0),) * 2
 
         pair.settle = settle

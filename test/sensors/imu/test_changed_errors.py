@@ -1,4 +1,4 @@
-"""Biases and faults that change during a run; states carry on."""
+"""Biases and faults that change during a run; internal states are kept."""
 
 from dataclasses import replace
 
@@ -29,7 +29,7 @@ KINDS = {'perfect': {}, 'noise, lags and pulses': FULL, 'tuned': {**FULL, **TUNE
 
 
 def flown(values, changes=()):
-    """Return rates and forces (n, 3) of a flight; changes: {sample: {key: value}}, lasting."""
+    """Return rates and forces (n, 3) of a flight; changes: {sample: {key: value}}, permanent."""
     s = settings({**MOTION_2, 'source': 'stream', **values})
     imu = make_imu(s.imu_sensor, motion := make_motion(
         s.motion_generator.motion, s.motion_generator.datum, s.motion_generator.earth))
@@ -46,7 +46,7 @@ def flown(values, changes=()):
 
 @pytest.mark.parametrize('kind', KINDS)
 def test_a_change_to_the_same_values_changes_no_bit(kind):
-    """Setting the same values again leaves lags, pulses, rotors and fault schedule bit for bit."""
+    """Setting equal values again leaves lags, pulses, rotors and fault schedule bit for bit."""
     expected = flown(KINDS[kind])
     got = flown(KINDS[kind], [(k, {}) for k in (1, 7, 150, 151, 300)])
     assert all(np.array_equal(a, b) for a, b in zip(got, expected))
@@ -66,7 +66,7 @@ def test_pulses_lose_nothing_at_a_change():
 
 
 def test_a_bias_behind_a_lag_is_there_at_once():
-    """A changed bias acts after the lag, like noise, so the step is not smoothed."""
+    """A changed bias acts after the lag, like noise, so that the step is not smoothed."""
     lagged = {key: value for key, value in FULL.items() if 'bandwidth' in key}
     omega, _ = flown(lagged, [(200, {'gyro.errors.bias_deg_h': [3600.0] * 3})])
     before, _ = flown(lagged)
@@ -75,7 +75,7 @@ def test_a_bias_behind_a_lag_is_there_at_once():
 
 
 def test_the_imu_without_errors_stays_bare():
-    """After a bias is removed again, the IMU is the ideal one without a wrapper."""
+    """After a bias is removed again the IMU is ideal and has no wrapper."""
     s = settings({**MOTION_2, 'source': 'stream'}).imu_sensor
     imu = make_imu(s)
     biased = replace(s, gyro=replace(s.gyro, errors=replace(s.gyro.errors,

@@ -1,4 +1,4 @@
-"""Increments: single steps, array operations and loops (plain and compiled) give equal bits."""
+"""Increments from single steps, arrays, and plain or compiled loops have the same bits."""
 
 import numpy as np
 import pytest

@@ -15,11 +15,11 @@ from ins_sim.core.simulation.inertial import imu_blocks, navigate_blocks
 
 LATE = {'gyro.delay_us.x': 1.0, 'gyro.delay_us.y': 0.5, 'gyro.delay_us.z': 0.0}
 MIXED = {**LATE, 'gyro.delay_us.z': -1.0}
-BOUND = {1.0: 1e-7, 10.0: 2e-6, 30.0: 5e-5}  # section 8: 1 us, at 100 Hz
+BOUND = {1.0: 1e-7, 10.0: 2e-6, 30.0: 5e-5}  # Section 8: 1 us, at 100 Hz.
 
 
 def mix(frequency):
-    """Return a coning mix of 3 deg: two angles of the same frequency, out of phase."""
+    """Return a coning motion of 3 deg: two angles of the same frequency, out of phase."""
     return {'motion.kind': 'sinusoids', 'motion.theta_deg': 5.0,
             'motion.sinusoids.angle_deg': [2.0, 3.0, 3.0],
             'motion.sinusoids.angle_hz': [frequency] * 3,
@@ -60,7 +60,7 @@ def test_delay_signal_of_the_stream(frequency, rate, figures):
 
 
 def drift_of(source, late, frequency, rate):
-    """Return the drift over 20 s of the mix, rad/s, after the history of the stream."""
+    """Return the drift over 20 s of the coning motion, rad/s, after the history of the stream."""
     s = settings({**mix(frequency), **late, 'source': source, 'rate_hz': rate,
                   'duration_s': 20.0, 'initial.after_s': 0.1})
     return run_offline(s, twin=False).errors.drift[-1]
@@ -86,7 +86,7 @@ def test_drift_of_the_stream(frequency, rate):
 
 
 def test_slerp_would_be_seen():
-    """With slerp instead of Hermite curves the delay signal at 10 Hz would fail clearly."""
+    """With slerp in place of Hermite curves the delay signal at 10 Hz would be far off."""
     values = {**mix(10.0), 'rate_hz': 100.0}
     s = settings(values)
     generator = s.motion_generator
@@ -129,7 +129,7 @@ def test_any_cutting_gives_the_same_bits(values):
 
 
 def push_all(imu, motion, frame, t_ns):
-    """Return the readings of an IMU that is pushed the truth at the instants t_ns."""
+    """Return the readings of an IMU that receives the truth at the instants t_ns."""
     truth, out = motion.at(t_ns), []
     for sample in zip(t_ns.tolist(), frame.attitude(truth).tolist(),
                       truth.omega_ib_b.tolist(), truth.f_ib_b.tolist()):

@@ -1,4 +1,4 @@
-"""Each instrument error alone has the effect of its equation; without errors the input is kept."""
+"""Each sensor error alone has the effect of its equation; without errors the input is kept."""
 
 from dataclasses import replace
 import math
@@ -84,7 +84,7 @@ def test_no_errors_give_the_input_itself(cls, temperature):
      lambda u, f: u + 3.0 * DEG_H * (f / STANDARD_GRAVITY) ** 2),
     (gyro(saturation_deg_s=20.0), lambda u, f: max(-20.0 * DEG, min(20.0 * DEG, u)))])
 def test_terms_without_memory(errors, expected):
-    """Each term without memory changes the input as its equation says, within 8 ulp."""
+    """Each term without memory changes the input by its equation, within 8 ulp."""
     for index, sign in ((0, 1.0), (1, -1.0)):
         got = errors.step(index, tuple(sign * u for u in U), F, 0.0)
         for value, u, f in zip(got, U, F):
@@ -93,7 +93,7 @@ def test_terms_without_memory(errors, expected):
 
 
 def test_temperature():
-    """Bias and scale factor follow constant, ramp and sinusoid of the temperature."""
+    """The bias and scale factor follow a constant, ramp and sinusoid of the temperature."""
     cls = GyroErrors(temperature_bias_deg_h_c=three(0.5), temperature_scale_ppm_c=three(4.0))
     errors = errors_of(cls, temperature=WARM)
     for t in (0.0, 100.0, 5000.0):

@@ -1,4 +1,4 @@
-"""Errors of a triad: single steps, plain and compiled loops and arrays give equal bits."""
+"""Errors of a triad: single steps, arrays, and plain or compiled loops have the same bits."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The IMU with errors: live and offline agree, and an IMU without errors is the ideal one."""
+"""The IMU with errors: live and offline agree, and without errors it is the ideal one."""
 
 from dataclasses import replace
 
@@ -40,7 +40,7 @@ def test_zero_errors_are_the_ideal_instrument():
 
 
 def test_live_is_offline_bit_for_bit_whatever_is_lost():
-    """Sample by sample, from the start or later, a stage gives the bits of the offline run."""
+    """Sample by sample, from any start, a stage gives the bits of the offline run."""
     s, motion, expected = offline(NOISY)
     frame, t_ns = MapFrame(s.motion_generator.datum, True), expected.t_ns
     truth = motion.at(t_ns)
@@ -70,7 +70,7 @@ def test_noise_has_the_density_of_the_settings():
 
 
 def test_covariances_reach_the_message():
-    """The covariances of sensor_msgs/Imu hold the variances; unknown without errors."""
+    """The covariances in sensor_msgs/Imu are the variances; without errors they are unknown."""
     s, _, _ = offline(NOISY)
     variances = reported_variances(s.imu_sensor)
     topic = topics.imu_raw(*variances)
@@ -83,7 +83,7 @@ def test_covariances_reach_the_message():
 
 @pytest.mark.parametrize('name', ['imu_tactical_mems', 'imu_tactical_fog', 'imu_navigation_rlg'])
 def test_presets_order_the_navigation_error(name):
-    """In ten minutes at rest a better IMU preset has a smaller error, and so has its twin."""
+    """In ten minutes at rest the error is smaller for a better IMU preset, as for its twin."""
     s = parameter_files.read([resources.config(name)], [
         'motion.kind:=static', 'duration_s:=600.0', 'rate_hz:=20.0', 'source:=motion'])
     run = run_offline(s)

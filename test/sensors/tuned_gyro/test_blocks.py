@@ -1,4 +1,4 @@
-"""Blocks of a pair of tuned gyros give the bits of single steps, in any cutting."""
+"""Blocks of a pair of tuned gyros give the bits of single steps, however they are cut."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ COUNT = 300
 
 @pytest.fixture(params=['plain', 'compiled'])
 def loops(request, monkeypatch):
-    """Run loops in plain Python, or compiled from the first sample on."""
+    """Run the loops in plain Python, or compiled from the first sample on."""
     if request.param == 'compiled':
         pytest.importorskip('numba')
     monkeypatch.setattr(compilation, 'PLAIN_SAMPLES', 0 if request.param == 'compiled' else 10**9)
@@ -48,7 +48,7 @@ def inputs(nodes):
 
 
 def stepped(one, t_ns, rates, force):
-    """Return rates and parities, computed sample by sample."""
+    """Return rates and parities computed sample by sample."""
     found = [one.step(*sample) for sample in zip(
         t_ns.tolist(), [list(map(tuple, w)) for w in rates.tolist()],
         map(tuple, force.tolist()))]
@@ -57,7 +57,7 @@ def stepped(one, t_ns, rates, force):
 
 @pytest.mark.parametrize('name', SETTINGS)
 def test_blocks_are_the_steps(name, loops):
-    """Rates, parity and the final state of blocks equal those of single steps over random cuts."""
+    """Rates, parity and final state of random blocks equal those of single steps."""
     one, other = instrument(SETTINGS[name]), instrument(SETTINGS[name])
     t_ns, rates, force = inputs(len(one.nodes))
     for each in (one, other):
@@ -68,13 +68,13 @@ def test_blocks_are_the_steps(name, loops):
     assert np.array_equal(np.concatenate([part[0] for part in parts]), omega)
     assert np.array_equal(np.concatenate([part[1] for part in parts]), parity)
     assert one.pair.state == other.pair.state
-    # A step after the blocks continues where they end.
+    # A step after the blocks continues from their final state.
     last = 10_000_000 * (COUNT + 1), [(0.1, 0.2, 0.3)] * len(one.nodes), (1.0, 2.0, 3.0)
     assert one.step(*last) == other.step(*last)
 
 
 def test_a_forced_fault_holds_through_a_block(loops):
-    """A fault that was injected by hand persists through a block, whatever its schedule."""
+    """A fault that was forced persists through a block, whatever its schedule."""
     one, other = instrument(BROKEN), instrument(BROKEN)
     t_ns, rates, force = inputs(3)
     for on in (True, False):
@@ -86,7 +86,7 @@ def test_a_forced_fault_holds_through_a_block(loops):
 
 
 def test_a_block_ends_where_the_rotors_run_away(loops):
-    """A block ends before the sample at which the rotors diverge, with the fault of the step."""
+    """A block ends before the sample at which the rotors diverge, with the fault of a step."""
     unstable = {**READ_OUT, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn'}
     with pytest.warns(UserWarning, match='unstable'):
         one, other = instrument(unstable), instrument(unstable)

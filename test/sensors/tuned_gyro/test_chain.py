@@ -1,4 +1,4 @@
-"""Two tuned gyros in the whole chain: live and offline, predicted and measured, with delays."""
+"""Two tuned gyros in a complete run: live and offline, predicted and measured, with delays."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def test_drift_is_the_predicted_one(arrangement, figures):
 
 
 def test_delays_compose_with_the_rotors():
-    """Delays add the same drift to tuned gyros as to the ideal gyro, within 1 %."""
+    """Delays cause the same drift with tuned gyros as with ideal gyros, within 1 %."""
     late = {'gyro.delay_us.y': 500.0}
     runs = [run_offline(settings({**DTG, **v}, duration_s=200.0), twin=False)
             for v in (late, {})]
@@ -42,7 +42,7 @@ def test_delays_compose_with_the_rotors():
 
 
 def test_live_is_offline_bit_for_bit_and_reset_forgets():
-    """A stage fed sample by sample gives the bits of the offline run, and again after a reset."""
+    """Samples passed one by one give the bits of the offline run, and again after a reset."""
     s = settings({**DTG, 'gyro.delay_us.x': 30.0}, source='stream', duration_s=3.0)
     expected, samples = streamed(s)
     imu = make_imu(s.imu_sensor)
@@ -54,7 +54,7 @@ def test_live_is_offline_bit_for_bit_and_reset_forgets():
 
 
 def test_closed_form_in_any_cutting():
-    """Rotors carry their state from block to block, so any cutting gives the same bits."""
+    """Rotors carry their state from block to block: any cutting gives the same bits."""
     s = settings(DTG, duration_s=3.0)
     generator = s.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)

@@ -56,7 +56,7 @@ def test_reported_covariance_is_that_of_the_readings(arrangement):
 
 
 def test_zero_errors_are_the_bare_pair_bit_for_bit():
-    """With all errors zero the instrument gives the bits of the bare pair."""
+    """With all errors zero the instrument gives the bits of a pair without errors."""
     one, bare = instrument(), make_pair(settings(DTG).imu_sensor.gyro, 0.01)
     generator = np.random.default_rng(1)
     for k in range(50):
@@ -77,7 +77,7 @@ EVERYTHING = {
                                        'gyro_1_y', 'gyro.dtg.fault.bias_deg_h': 100.0,
                                        'gyro.dtg.fault.start_s': 1.0}])
 def test_everything_on_live_is_offline_and_reset_forgets(more):
-    """With everything on, samples and blocks agree bit for bit, and again after a reset."""
+    """With all errors on, samples and blocks agree to the bit, and again after a reset."""
     s = settings({**EVERYTHING, **more}, source='stream', duration_s=3.0)
     expected, samples = streamed(s)
     imu = make_imu(s.imu_sensor)
@@ -89,7 +89,7 @@ def test_everything_on_live_is_offline_and_reset_forgets(more):
 
 
 def test_steps_per_sample_bring_rk4_to_a_slow_imu():
-    """At 100 Hz RK4 is stable for sapegin_2016 with 13 steps (0.77 ms) a sample, not with 10."""
+    """RK4 is stable for sapegin_2016 at 100 Hz with 13 steps (0.77 ms) a sample, not with 10."""
     rotor = {'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.method': 'rk4'}
     with pytest.raises(ValueError, match='RK4 step is 10 ms, at which the gyro is unstable; '
                        'expected between 0.332'):
@@ -108,7 +108,7 @@ def test_steps_per_sample_bring_rk4_to_a_slow_imu():
 
 
 def test_rotors_that_run_away_are_a_fault():
-    """Diverging rotors raise a fault instead of an infinite reading; a restart settles them."""
+    """Diverging rotors raise a fault in place of an infinite reading; a restart settles them."""
     values = {**DTG, 'gyro.dtg.preset': 'sapegin_2016', 'gyro.dtg.on_unstable': 'warn',
               OUT + 'quantisation_arcsec': [0.3] * 3}
     with pytest.warns(UserWarning, match='unstable'):
@@ -139,7 +139,7 @@ def test_a_custom_gyro():
     ('cross_feedback_n_m_rad', 0.05, 'with loop closed; expected 0'),
     ('speed_hz', 0.0, 'gyro.dtg.custom.speed_hz is 0; expected a number above 0')])
 def test_bad_gyros_are_refused(key, value, says):
-    """Impossible gyros are refused in one sentence that names key, value and expectation."""
+    """Impossible gyros are refused with one message that has key, value and expectation."""
     with pytest.raises(ValueError) as raised:
         instrument({'gyro.dtg.preset': 'custom', 'gyro.dtg.custom.' + key: value})
     assert says in str(raised.value) and '\n' not in str(raised.value)

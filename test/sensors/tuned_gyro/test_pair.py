@@ -65,7 +65,7 @@ def test_channels_are_the_body_rates_along_their_axes(arrangement):
 
 
 def test_both_arrangements_give_the_same_rates():
-    """Both arrangements give the same rates; turned pick-offs change the parity only."""
+    """Both arrangements give the same rates; rotated pick-offs change the parity only."""
     w = steps(tumbling, 500)
     a, b = (pair(arrangement).advance(w) for arrangement in ARRANGEMENTS)
     np.testing.assert_allclose(a[0], b[0], rtol=0, atol=1e-13)
@@ -75,7 +75,11 @@ def test_both_arrangements_give_the_same_rates():
 @pytest.mark.parametrize('arrangement', ARRANGEMENTS)
 @pytest.mark.parametrize('channel', range(4))
 def test_parity_sees_a_fault(arrangement, channel):
-    """The parity shows a fault of any channel if turned, otherwise only of the two along x."""
+    """
+    The parity shows a fault of any channel if pick-offs are rotated, otherwise of two only.
+
+    These are the two along x.
+    """
     gyros, w = pair(arrangement), (0.0, 0.0, 0.0)
     gyros.inject(CHANNELS[channel], bias_rad_s=1e-3)
     _, parity = gyros.step(w, w, w)
@@ -87,7 +91,7 @@ def test_parity_sees_a_fault(arrangement, channel):
 
 
 def test_a_dead_channel():
-    """With scale 0 on a channel the turned arrangement reads half of its rate in the parity."""
+    """With scale 0 on a channel, rotated pick-offs show half of its rate in the parity."""
     gyros, w = pair('turned'), (0.2, 0.1, 0.0)
     for _ in range(300):
         y = gyros.channels(w, w, w)
@@ -96,7 +100,7 @@ def test_a_dead_channel():
 
 
 def test_state_can_be_kept_and_set_back():
-    """A saved state that is set back gives the same bits again."""
+    """A saved state that is restored gives the same bits again."""
     w, gyros = steps(tumbling, 100), pair('turned')
     gyros.advance(w[:40])
     kept = gyros.state
@@ -134,7 +138,7 @@ BAD = {"arrangement is 'heap'; expected paper or turned": lambda: pair('heap'),
 
 @pytest.mark.parametrize('sentence', BAD)
 def test_bad_input(sentence):
-    """Bad arguments raise an error of one sentence."""
+    """Invalid arguments raise an error of one message."""
     with pytest.raises(ValueError, match=sentence):
         BAD[sentence]()
 
@@ -178,7 +182,11 @@ def test_drift_of_motion_2_is_the_predicted_one(preset):
 
 
 def test_parity_of_a_healthy_pair_in_motion():
-    """The parity in motion is -x (w_y + w_z) / sqrt 2, x = j w A / (B Omega), 1 % at 1 Hz."""
+    """
+    The parity of a moving healthy pair is -x (w_y + w_z) / sqrt 2, x = j w A / (B Omega).
+
+    Tolerance: 1 % at 1 Hz.
+    """
     w, gyros = 2 * math.pi, pair('turned')
     found = gyros.advance(steps(lambda t: (np.cos(w * t), np.cos(w * t), 0.0 * t), 2000))[1]
     lag = TACTICAL.transverse_inertia / (TACTICAL.input_inertia * TACTICAL.omega)

@@ -32,7 +32,11 @@ def windows_of(values, duration_s=30.0):
 @pytest.mark.parametrize('arrangement', ['paper', 'turned'])
 @pytest.mark.parametrize('errors', [{}, preset('tactical_dtg')], ids=['perfect', 'tactical'])
 def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
-    """No alarm at rest, turning, rocking, in flight, with and without errors, for five seeds."""
+    """
+    There is no alarm at rest, turning, rocking, in flight, with or without errors.
+
+    Each case is run with five seeds.
+    """
     closest = 0.0
     for seed in range(5 if errors else 1):
         found = windows_of({**motion, **errors, 'seed': seed,
@@ -47,7 +51,7 @@ def test_healthy_channels_raise_no_alarm(motion, arrangement, errors):
     ('paper', 'gyro_1_z', False), ('paper', 'gyro_2_y', False),
     *(('turned', c, True) for c in ('gyro_1_y', 'gyro_1_z', 'gyro_2_y', 'gyro_2_z'))])
 def test_a_fault_is_seen_where_the_parity_can_see_it(arrangement, channel, seen):
-    """A fault of 50 deg/h from 10 to 20 s is detected exactly where the parity can show it."""
+    """A fault of 50 deg/h from 10 to 20 s is detected if and only if the parity depends on it."""
     found = windows_of({**TABLE, **preset('tactical_dtg'), **FAULT, 'seed': 2,
                         'gyro.dtg.arrangement': arrangement, 'gyro.dtg.fault.channel':
                             channel, 'gyro.dtg.fault.bias_deg_h': 50.0})
@@ -70,7 +74,7 @@ def test_a_dead_channel_is_seen_while_it_turns():
 
 
 def test_a_fixed_threshold_and_window():
-    """A threshold and a window set by hand are used as given."""
+    """A threshold and a window set by the user are used as given."""
     values = {**TABLE, 'gyro.dtg.parity.threshold_deg_h': 2.0, 'gyro.dtg.parity.window_s': 0.5,
               **FAULT, 'gyro.dtg.fault.channel': 'gyro_1_y', 'gyro.dtg.fault.bias_deg_h': 2.9}
     found = windows_of(values)
@@ -95,7 +99,7 @@ def test_before_the_first_window():
 
 @pytest.mark.parametrize('count', [0, 1, 99, 100, 101, 1234])
 def test_windows_of_a_run_are_those_of_its_readings(count):
-    """Windows and rows computed from arrays equal those of single readings, bit for bit."""
+    """Windows and rows computed from arrays equal those from single readings, bit for bit."""
     rng = np.random.default_rng(6)
     imu = ImuSamples((1 + np.arange(count)) * 10_000_000, rng.normal(size=(count, 3)),
                      rng.normal(size=(count, 3)), 1e-4 * rng.normal(size=count))

@@ -1,4 +1,4 @@
-"""The dynamically tuned gyro compared with its equations, an ODE solver and published figures."""
+"""The dynamically tuned gyro compared with its equations, an ODE solver and published values."""
 
 from dataclasses import replace
 import math
@@ -26,7 +26,7 @@ def draws(count, seed=3):
 
 
 def real_form(p, w):
-    """Return direct and cross response of the real open-loop equations with u' (section 1)."""
+    """Return direct and cross response of the real open-loop equations with u'."""
     a, s = p.transverse_inertia, 1j * w
     b, h, c = p.input_inertia * p.omega, p.momentum, p.coupling
     own, other = a * s * s + p.damping * s + p.stiffness(), h * s + c
@@ -126,7 +126,7 @@ def test_the_printed_equation_diverges():
 
 
 def test_residual_stiffness_of_another_speed():
-    """Hinges tuned at the nominal speed give k2 = -2 K_t dOmega / Omega at another (section 6)."""
+    """Hinges tuned at the nominal speed have k2 = -2 K_t dOmega / Omega at another speed."""
     hinges = (1e-7 - 0.5 * 1.5e-7) * SAPEGIN.omega ** 2
     assert SAPEGIN.stiffness() == 0.0
     assert SAPEGIN.stiffness(230.0 * (1 + 1e-6)) == pytest.approx(-2e-6 * hinges, rel=1e-5)

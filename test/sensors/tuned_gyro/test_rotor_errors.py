@@ -37,7 +37,7 @@ def combined(channels, arrangement='paper'):
 
 FORCE = (2.0, -3.0, 9.0)
 RATE = (0.2, -0.1, 0.3)
-# Acceleration along (y, z, spin) of both cases: gyro 1 has body (x, y, z), gyro 2 body (z, x, y).
+# Specific force along (y, z, spin) of both cases: gyro 1 has body (x, y, z), gyro 2 (z, x, y).
 ALONG = {0: (2.0, -3.0, 9.0), 1: (-3.0, 2.0, 9.0), 2: (9.0, 2.0, -3.0), 3: (2.0, 9.0, -3.0)}
 
 
@@ -109,7 +109,7 @@ def test_hunting():
     fit = np.exp(1j * 2.0 * math.pi * 2.0 * dt * (np.arange(400) + 0.5))
     got = np.mean((added[100:, 0] + 1j * added[100:, 1]) * fit.conj()[100:])
     want = np.mean(drift[100:] * fit.conj()[100:]) * through
-    # The wave is held over each interval.
+    # The sinusoid is held over each interval.
     assert abs(got - want) <= 2e-3 * abs(want)
     assert not added[:, 2:].any()
 
@@ -120,7 +120,7 @@ def _begun(one, t_ns):
 
 
 def test_spin_rate_product():
-    """The spin rate product drifts by ((B - A)/(B Omega)) u_s u, with 3.007e-4 s."""
+    """The spin rate product causes a drift of ((B - A)/(B Omega)) u_s u, with 3.007e-4 s."""
     product = (B - A) / (B * OMEGA)
     print(f'\n(B - A)/(B Omega) = {product:.4e} s, A/(B Omega) = {A / (B * OMEGA):.4e} s')
     assert f'{product:.3e}' == '3.007e-04'
@@ -135,7 +135,7 @@ def test_cross_coupling_of_angular_acceleration():
     assert f'{A / (B * OMEGA):.3e}' == '3.913e-04'
     omega = 1e-2
     _, cross = state_space(TACTICAL).axis_responses(np.array([omega]))
-    # As omega approaches 0 the rotor is held still and only the moment A u' remains.
+    # As omega approaches 0 the rotor is held and only the moment A u' remains.
     assert abs(cross[0] - 1j * omega * A / (B * OMEGA)) <= 1e-4 * abs(cross[0])
 
 
@@ -168,8 +168,8 @@ def precession(ring, u_0, phase):
     t = np.linspace(0.0, length, 40001)
     found = solve_ivp(rate, (0.0, length), (0.0,) * 4, 'DOP853', t, rtol=1e-11, atol=1e-16)
     tilt = (found.y[0] + 1j * found.y[1]) * np.exp(1j * omega * t)
-    # Use the slope at the start: to second order the ring detunes the rotor, which later turns the
-    # precession.
+    # Use the slope at the start: to second order the ring detunes the rotor, which later rotates
+    # the precession.
     return -(jr + jq) / (jr + 0.5 * jk) * np.polyfit(t, tilt, 4)[-2]
 
 
@@ -191,7 +191,7 @@ def test_vibration_at_twice_the_speed(ring):
 
 
 def test_vibration_reaches_the_reading():
-    """Vibration at twice the speed reads as a constant drift of 1.2e-3 of its amplitude."""
+    """Vibration at twice the rotor speed reads as a constant drift of 1.2e-3 of its amplitude."""
     assert f'{TACTICAL.vibration_2n_factor:.1e}' == '1.2e-03'
     change = steady({ERRORS + 'vibration_2n_deg_s': [2.0, 0.0],
                      ERRORS + 'vibration_2n_phase_deg': [30.0, 0.0]}, (0.0,) * 3, FORCE)

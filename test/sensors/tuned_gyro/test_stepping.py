@@ -1,4 +1,4 @@
-"""Stepping a tuned gyro: against an ODE solver, in any cutting, and inside the RK4 window."""
+"""Steps of a tuned gyro: against an ODE solver, in any cutting, and inside the RK4 window."""
 
 from dataclasses import replace
 import math
@@ -47,7 +47,7 @@ def test_exact_steps_against_an_ode_solver(name):
 
     Tolerance: 1e-6 of the amplitude of the reading for quadratic hold, (w h)^2 / 12 for linear
     hold, including the start from zero with a jump of the rate (later errors are a third of that).
-    The reading of an instant, which no sample gives, has twice the tolerance.
+    The instantaneous reading, which is not part of a sample, has twice the tolerance.
     """
     p, dt, steps, w = STABLE[name], 1e-3, 200, 40 * math.pi
 
@@ -166,7 +166,7 @@ def test_change_of_speed():
     for _ in range(300):
         steady = gyro.step(1.0, 1.0, 1.0)
     assert steady == pytest.approx(1.001, abs=1e-12)
-    # Open loop: the read-out stays nominal, and k2 turns the reading into the other axis.
+    # Open loop: the output scaling stays nominal, and k2 rotates the reading into the other axis.
     c = SAPEGIN.rotating_damping_n_m_s * 2 * math.pi * 231.0 + SAPEGIN.cross_feedback_n_m_rad
     expected = 231.0 / 230.0 * SAPEGIN.coupling / complex(c, SAPEGIN.stiffness(231.0))
     assert state_space(SAPEGIN, 231.0).response(0.0) == pytest.approx(expected, rel=1e-12)
@@ -187,7 +187,7 @@ UNSTABLE = {
 
 @pytest.mark.parametrize('sentence', UNSTABLE)
 def test_instruments_that_would_grow_are_refused(sentence):
-    """Gyros whose steps would diverge are refused unless a warning is requested."""
+    """Gyros whose steps would diverge are refused unless only a warning is requested."""
     parameters, dt, options = UNSTABLE[sentence]
     with pytest.raises(ValueError, match=sentence):
         TunedGyro(parameters, dt, **options)

@@ -45,7 +45,7 @@ def test_windows_that_measure_nothing(mode, terms, change, says):
 @pytest.mark.parametrize('start, end, lost', [(0.1, 0.2, [2]), (0.0999, 0.2001, [1, 2, 3]),
                                               (0.0, 0.1, [1]), (0.25, 0.26, [3]), (0.4, 9.0, [])])
 def test_the_schedule_of_drop_outs(start, end, lost):
-    """Windows (0, 0.1], (0.1, 0.2], ... that overlap a scheduled drop-out are invalid."""
+    """Windows that overlap a scheduled drop-out are invalid; windows are (0, 0.1], (0.1, 0.2]."""
     s = meter_settings({'window.cycles': 10, 'drop_outs.start_s': [start, 20.0],
                         'drop_outs.end_s': [end, 30.0]})
     fixes = VelocityMeter(s).advance(*flight(40))
@@ -70,7 +70,7 @@ def test_without_an_ins():
     fixes = meter.advance(*flight(100 * (seconds + 2)))
     assert [(fix.end_ns, fix.status) for fix in fixes] == \
         [(m * 100 * DT_NS, NO_INS) for m in (1, 2)]
-    # The INS arrives late: windows that it did not see are invalid, and nothing waits any longer.
+    # The INS arrives late: windows that it did not see are invalid; later ones do not wait.
     fixes = meter.push_ins(100 * (seconds + 2) * DT_NS, (V, 0.0, 0.0))
     assert [fix.status for fix in fixes] == [NO_INS] * (seconds - 1) + ['valid']
 
@@ -98,7 +98,7 @@ def pushed(meter, cycles):
     (12, (V, 0.0, 0.0), 500.0, True, 'has a gap from 0.100000000 s to 0.120000000 s'),
     (10.5, (V, 0.0, 0.0), 500.0, False, 'lies between the cycles of rate_hz')])
 def test_faults_of_the_truth(t, v, height, restart, says):
-    """Faults of the truth raise one sentence; a dropped sample leaves the meter unaffected."""
+    """A fault of the truth raises one message; a dropped sample does not change the meter."""
     meter = pushed(VelocityMeter(meter_settings(window__cycles=20)), 10)
     with pytest.raises(StreamFault, match=says) as raised:
         meter.push_truth(round(t * DT_NS), v, height)
@@ -136,6 +136,6 @@ def test_faults_of_the_ins():
     for k in (1, 1, 50):
         assert meter.push_ins(k * DT_NS, (V, 0.0, 0.0)) == []
     assert meter.push_ins(40 * DT_NS, (V, 0.0, 0.0)) == []
-    # Without the use of an INS its faults do not matter.
+    # If the meter does not use the INS, its faults do not matter.
     deaf = VelocityMeter(meter_settings())
     assert [deaf.push_ins(k, (math.nan, 0.0, 0.0)) for k in (5, 3)] == [[], []]

@@ -1,4 +1,4 @@
-"""The velocity meter as an instrument: windows, streams, angle of attack, invalid fixes."""
+"""The velocity meter as a sensor: windows, streams, angle of attack, invalid fixes."""
 
 import math
 
@@ -17,7 +17,7 @@ MODES = ('signal', 'surrogate')
 
 
 def wavy(cycles, first=0):
-    """Return t_ns, v_b, height of a flight that accelerates, slips and climbs."""
+    """Return t_ns, v_b, height of a flight with acceleration, sideslip and climb."""
     t_ns, v_b, height = flight(cycles, first=first)
     s = t_ns * 1e-9
     v_b[:, 0], v_b[:, 1], v_b[:, 2] = V + 3.0 * s, 4.0 * np.sin(s), -5.0 + np.cos(2.0 * s)
@@ -44,7 +44,7 @@ def test_windows():
 @pytest.mark.parametrize('first, windows', [(0, 3), (1, 2), (9, 2), (10, 2), (11, 1), (-10, 3),
                                             (-3, 3), (20, 1), (21, 0)])
 def test_a_window_that_was_not_seen_from_its_start_is_not_reported(first, windows):
-    """A window whose start was not seen, or that begins before time zero, is not reported."""
+    """A window that began before the first sample, or before time zero, is not reported."""
     meter = VelocityMeter(meter_settings(window__cycles=10))
     fixes = meter.advance(*flight(30 - first, first=first))
     assert [fix.end_ns // DT_NS for fix in fixes] == [10, 20, 30][3 - windows:]
@@ -99,7 +99,7 @@ def test_any_cutting_gives_the_same_bits(mode, attack, cycles, lead, cuts):
 @example(order=[False] * 134)
 def test_a_run_after_a_jump_back_is_whole(order):
     """
-    After truth or INS has jumped back, windows of the new run have all its angles and no old one.
+    After truth or INS has jumped back, windows of the new run have only its own angles.
 
     Both streams have begun the first run before one of them ends it.
     """
@@ -129,7 +129,7 @@ def test_a_run_after_a_jump_back_is_whole(order):
 
 @pytest.mark.parametrize('mode', MODES)
 def test_seeds_and_runs(mode):
-    """The same seed and run give the same numbers, others give different ones."""
+    """The same seed and run give the same numbers; others give different ones."""
     def velocities(**terms):
         s = meter_settings(mode=mode, window__cycles=10, **terms)
         return [fix.velocity for fix in VelocityMeter(s).advance(*flight(20))]
@@ -159,7 +159,11 @@ def test_the_angle_of_attack_of_the_ins():
 
 
 def test_the_surrogate_has_its_errors():
-    """Surrogate: bias, scales, and variances (chi-square at 1e-6), with sideslip, N = 4."""
+    """
+    Mode surrogate has its bias, scales and variances (chi-square at 1e-6).
+
+    The flight has sideslip, and windows have 4 cycles.
+    """
     beta, n = 0.1, 3000
     s = meter_settings(window__cycles=4, surrogate__k_x=0.01, surrogate__k_z=-0.02,
                        beam__sigma_theta_z_rad=0.11)

@@ -1,4 +1,4 @@
-"""The velocity meter on records of the truth, with the angle of attack of an INS."""
+"""The velocity meter on records of the truth, with the angle of attack from an INS."""
 
 from ins_sim.core.sensors.velocity_meter.meter import VelocityMeter
 from ins_sim.core.sensors.velocity_meter.over_truth import MeterOnTruth
@@ -22,7 +22,7 @@ def record(rate_hz):
 @pytest.mark.parametrize('rate_hz', (100.0, 10.0))
 def test_long_blocks_leave_no_window_without_the_ins(rate_hz):
     """
-    At 10 Hz a block of 4096 samples exceeds the wait for the INS, yet every window has its angle.
+    At 10 Hz a block of 4096 samples exceeds the wait for the INS, yet no window lacks its angle.
 
     Cuts between blocks change no bit, even if they separate INS samples from the truth 3 ms later.
     """

@@ -16,8 +16,8 @@ V = 250.0
 # Lateral scale errors of the two normalisations, see docs/design/velocity_meter.md.
 LATERAL_SCALE = {'cycle': 0.054, 'window': 0.015}
 # Ratios of the sigmas of V_x and V_z to the formulas of the surrogate, by sideslip in deg, from
-# 1000 windows of 100 cycles with five seeds (one standard deviation is 2 %); same page,
-# "Surrogate".
+# 1000 windows of 100 cycles with five seeds (one standard deviation is 2 %). Source: the same
+# page, "Surrogate".
 OVER_SURROGATE = {0.0: (0.93, 1.12), 3.0: (0.97, 1.07), -6.0: (0.97, 1.19)}
 
 
@@ -57,7 +57,7 @@ def test_the_field_has_the_correlations_it_is_made_for(terms, speed, beta, alpha
     for part, wanted in ((each.real, expected), (each.imag, 0.0 * expected)):
         z = (part.mean(axis=0) - wanted) / (part.std(axis=0, ddof=1) / math.sqrt(cycles) + 1e-12)
         worst = max(worst, np.abs(z).max())
-    # With 640 normal numbers, one in 1e6 tests exceeds 6.3.
+    # With 640 normal numbers one in 1e6 tests exceeds 6.3.
     print(f'{speed:g} m/s, beta {beta:g} deg, {terms}: worst of {expected.size} lags {worst:.2f} '
           'sigma')
     assert worst < 6.3
@@ -65,12 +65,12 @@ def test_the_field_has_the_correlations_it_is_made_for(terms, speed, beta, alpha
 
 def test_one_cycle(figures):
     """
-    One cycle: sigma of V_x is about 45 m/s as published; 15 % of the windows are invalid.
+    One cycle: sigma of V_x is about 45 m/s, as published; 15 % of the windows are invalid.
 
     Both come from false peaks. "About 45" is read as given to 5 m/s; the scatter of our sigma
     follows from the fourth moment, because false peaks make heavy tails. Known deviation from the
-    published 8 %: false peaks below the least speed are also refused, which gives 15 %, held
-    within three standard deviations of the number of invalid windows.
+    published 8 %: false peaks below the least speed are also rejected, which gives 15 %, within
+    three standard deviations of the number of invalid windows.
     """
     found, valid = errors(meter_settings(mode='signal', window__cycles=1), 3000)
     sigma = show('N = 1', found, valid, '~45, 8 % invalid')
@@ -85,7 +85,7 @@ def test_one_cycle(figures):
 
 def test_a_hundred_cycles(figures):
     """
-    A hundred cycles: sigmas 0.79 and 0.87 m/s as published; amplitudes beat delays six times.
+    A hundred cycles: sigmas 0.79 and 0.87 m/s, as published; by delays sigma is six times larger.
 
     Each sigma scatters by three standard deviations of an estimate from 120 windows, their ratio
     by the root of two times that.
@@ -173,7 +173,11 @@ def test_complex_detection_is_quieter():
 @pytest.mark.parametrize('detection', ['power', 'complex'])
 @pytest.mark.parametrize('normalisation', ['window', 'cycle'])
 def test_every_way_of_correlating_measures(detection, normalisation):
-    """Each detection and normalisation is within five surrogate sigmas, with attack and slip."""
+    """
+    Each detection and normalisation errs by less than five surrogate sigmas.
+
+    The flight has angle of attack and sideslip.
+    """
     v = body(V, math.radians(4.0), math.radians(5.0))
     s = meter_settings({'mode': 'signal', 'window.cycles': 400, 'attack_angle': 'ins',
                         'signal.detection': detection, 'signal.normalisation': normalisation,
@@ -191,7 +195,7 @@ def test_every_way_of_correlating_measures(detection, normalisation):
 
 
 def test_the_mounting_error_appears_as_a_lateral_velocity():
-    """Antennas turned left by mu read V_z1 = mu V_x1, as the surrogate does."""
+    """Antennas rotated to the left by mu read V_z1 = mu V_x1, as the surrogate does."""
     found = {}
     for mode, terms in (('signal', {}), ('surrogate', PERFECT)):
         s = meter_settings({'mode': mode, 'antennas.mounting_yaw_arcmin': 60.0,
@@ -204,7 +208,7 @@ def test_the_mounting_error_appears_as_a_lateral_velocity():
 
 
 def test_delays_beyond_the_lags():
-    """A correlator with too few lags cannot measure slow flight and gives the reason."""
+    """A correlator with too few lags cannot measure slow flight; fixes have this reason."""
     s = meter_settings(mode='signal', window__cycles=200, signal__lags=16, signal__snr_db=30.0,
                        limits__speed_min_m_s=100.0)
     slow, fast = (VelocityMeter(s).advance(*flight(200, (v, 0.0, 0.0)))[0] for v in (106.0, V))

@@ -18,7 +18,7 @@ V = 250.0
 
 
 def noise_free(speed, beta, alpha=0.0, taken=None, **terms):
-    """Return the Reading for expected functions; taken: the assumed alpha (default alpha)."""
+    """Return the Reading of expected functions; taken: the assumed alpha, by default the true."""
     s = meter_settings(mode='signal', **terms)
     field = Field(s)
     functions = field.correlations(s.signal.lags, speed * math.cos(beta), speed * math.sin(beta),
@@ -53,7 +53,7 @@ def test_signs_and_factors(side, offsets, detection, beta):
     # Rounding of logarithms in a fit over a few lags.
     wanted = V * math.cos(beta), V * math.sin(beta), V * math.sin(beta)
     assert (one.v_x, one.v_z, one.v_z_delays) == pytest.approx(wanted, abs=1e-9 * V)
-    # Antenna 2 on the right: on a track to the right it passes sooner after antenna 1.
+    # Antenna 2 is on the right: on a track to the right it passes sooner after antenna 1.
     assert np.sign(round(1e12 * (one.tau[0] - one.tau[1]))) == \
         -np.sign(beta) * (1 if side == 'right' else -1)
 
@@ -151,7 +151,7 @@ def test_correlated_noise_counts_by_its_weight():
     ([0.0, 0.1, 0.3, 1.0, 0.3, -0.1, 0.0, 0.0], 'has a value that is not positive in the fit'),
     ([0.0, 0.9, 0.6, 0.51, 0.9, 1.0, 0.99, 0.0], 'has no maximum in the fit')])
 def test_peaks_that_are_none(values, says):
-    """Cross-correlations without a usable peak give their reason."""
+    """Cross-correlations without a usable peak make the fix invalid, with a reason."""
     assert cross_peak(values).status == says
 
 

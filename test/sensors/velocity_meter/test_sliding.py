@@ -1,4 +1,4 @@
-"""Sliding windows: their instants, contents and common cycles."""
+"""Sliding windows: their instants, contents, and common cycles."""
 
 from dataclasses import replace
 import math
@@ -16,7 +16,7 @@ UNBIASED = {'surrogate.bias_x_m_s': 0.0}
 
 
 def wavy(cycles, first=0):
-    """Return t_ns, v_b, height of a flight that accelerates, slips and climbs."""
+    """Return t_ns, v_b, height of a flight with acceleration, sideslip and climb."""
     t_ns, v_b, height = flight(cycles, first=first)
     s = t_ns * 1e-9
     v_b[:, 0], v_b[:, 1], v_b[:, 2] = 200.0 + 3.0 * s, 4.0 * np.sin(s), np.cos(2.0 * s)
@@ -73,7 +73,7 @@ def test_windows_at_whole_multiples_are_those_that_do_not_overlap(mode):
     assert len(apart) == 4 and len(slid) == 10
     common = [fix for fix in slid if fix.end_ns % (12 * DT_NS) == 0]
     np.testing.assert_allclose(velocities(common)[1], velocities(apart)[1], rtol=1e-9)
-    # In mode signal the windows between them are those of a flight that begins there.
+    # In mode signal these windows are those of a flight that begins at their start.
     assert all(fix.valid for fix in slid)
 
 
@@ -163,7 +163,7 @@ def test_after_a_gap_a_window_is_seen_from_its_start_again():
 
 @pytest.mark.parametrize('slide', [4, 7, 20])
 def test_a_slide_that_is_no_divisor_is_refused(slide):
-    """A slide that is not a divisor of N is refused in one sentence."""
+    """A slide that is not a divisor of N is refused with one message."""
     with pytest.raises(ValueError, match=f'window.slide_cycles is {slide} with window.cycles 10; '
                                          'expected 0 or a divisor of window.cycles'):
         meter_settings(window__cycles=10, window__slide_cycles=slide)

@@ -1,4 +1,4 @@
-"""Impossible odometry is reported in one sentence and gives no truth; truth resumes later."""
+"""Invalid odometry is reported with one message and gives no truth; later truth continues."""
 
 import math
 
@@ -41,13 +41,13 @@ def rows_of(name='sinusoids', rate_hz=50.0, length_s=8.0):
 
 
 def changed(rows, k, **fields):
-    """Return rows of which number k has other fields."""
+    """Return rows in which row k has other fields."""
     row = dict(zip(('t_ns', 'r', 'q', 'v', 'w'), rows[k]))
     return [*rows[:k], tuple({**row, **fields}.values()), *rows[k + 1:]]
 
 
 def moved(rows, k, metres):
-    """Return rows whose positions are shifted from number k on."""
+    """Return rows whose positions are shifted from row k on."""
     return [*rows[:k], *((t, (r[0] + metres, *r[1:]), q, v, w) for t, r, q, v, w in rows[k:])]
 
 
@@ -65,7 +65,7 @@ def moved(rows, k, metres):
 def test_a_fault_is_one_sentence_and_passes(spoil, said, k):
     """A bad sample is reported once; the truth then continues or restarts."""
     truths, sentences = pushed(spoil(rows_of(), k))
-    # A dropped sample leaves a gap behind it.
+    # A dropped sample leaves a gap.
     assert said in sentences[0] and len(sentences) <= 2
     assert all('gap' in sentence for sentence in sentences[1:])
     assert len(truths) > 600
@@ -74,7 +74,7 @@ def test_a_fault_is_one_sentence_and_passes(spoil, said, k):
 
 
 def test_a_turn_too_far_is_said():
-    """An input that turns more than 2 rad between samples gives no truth, and one message."""
+    """An input that rotates by more than 2 rad between samples gives no truth, and one message."""
     rows = [(k * 50_000_000, (0.0,) * 3, (0.0, 0.0, math.sin(1.1 * k), math.cos(1.1 * k)),
              (0.0,) * 3, (0.0, 0.0, 44.0)) for k in range(200)]
     truths, said = pushed(rows)
@@ -82,7 +82,7 @@ def test_a_turn_too_far_is_said():
 
 
 def test_another_rate_is_taken_for_another_input():
-    """A simulator that returns at half the rate is judged again."""
+    """A simulator that returns at half the rate is examined again."""
     rows = rows_of(rate_hz=100.0, length_s=12.0)
     truths, said = pushed([*rows[:400], *rows[400::2]])
     assert len(said) == 2 and 'gap' in said[0]
@@ -90,7 +90,7 @@ def test_another_rate_is_taken_for_another_input():
 
 
 def test_a_silence_is_a_gap():
-    """An input that pauses gives truth up to the pause and again from its end."""
+    """An input that pauses gives truth up to the pause, and again from its end."""
     rows = rows_of()
     truths, said = pushed([*rows[:200], *rows[300:]])
     assert len(said) == 1 and 'from 3.980000000 s to 6.000000000 s' in said[0]
@@ -106,7 +106,7 @@ def test_stamps_of_a_wrong_unit_do_no_harm():
 
 @pytest.mark.parametrize('step_ns', [1, 1000])
 def test_stamps_too_near_do_no_harm(step_ns):
-    """A stream with stamps nanoseconds apart neither fills the memory nor repeats messages."""
+    """Stamps that are nanoseconds apart neither fill the memory nor repeat messages."""
     rows = rows_of(length_s=4.0)
     adapter = TruthAdapter(build(TruthAdapterSettings, PLACE))
     for k in range(20_000):
@@ -127,7 +127,7 @@ VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
        st.sampled_from(['auto', 'use', 'ignore']), st.sampled_from(['believed', 'nominal']),
        st.sampled_from([0.0, 0.2]))
 def test_no_garbage_makes_anything_but_sentences(spoiled, twist, stamps, smoothing_s):
-    """For any content of samples the stage raises StreamFault only, and its truth stays finite."""
+    """For any samples the stage raises StreamFault only, and its truth stays finite."""
     rows = rows_of(length_s=6.0)
     for k, shift_ns, name, vector, w in spoiled:
         value = vector if name != 'q' else (*vector, w)

@@ -1,4 +1,4 @@
-"""The curves of the truth adapter: stencils, fits, pieces, and the readings derived from them."""
+"""The curves of the truth adapter: stencils, fits, pieces, and the readings from them."""
 
 import math
 
@@ -99,7 +99,7 @@ def test_it_is_late_by_at_most_three_periods(make, rate_hz):
 
 
 def test_a_dense_input_is_fitted_at_knots():
-    """Of a dense input every fourth sample is a knot, half a window later and less noisy."""
+    """In a dense input every fourth sample is a knot, half a window later and less noisy."""
     simulator = OtherSimulator('motion_1', 400.0, 20.0).noisy(1e-3, 0.01)
     fit = KnotFit(4, 5_000_000, 2_500_000)
     knots = [knot for row in simulator.samples() for knot in fit.push(Sample(*row))]

@@ -1,4 +1,4 @@
-"""The judgement of the truth adapter on its input, and the scheme that follows from it."""
+"""How the truth adapter classifies its input, and the scheme that follows from it."""
 
 import math
 
@@ -33,7 +33,7 @@ def test_noise_is_found_by_axis():
 
 def test_a_noisy_twist_is_held_tighter_where_the_positions_bear_it():
     """
-    The position loop is tight for a noisy twist, loose for noisy positions.
+    The position loop is tight for a noisy twist and loose for noisy positions.
 
     Between these limits its bandwidth follows the square root of the ratio of the noises.
     """
@@ -50,7 +50,7 @@ def test_a_noisy_twist_is_held_tighter_where_the_positions_bear_it():
 @pytest.mark.parametrize('twist, noise', [('use', {'metres_s': 1e-3}),
                                           ('ignore', {'metres': 1e-4})])
 def test_the_noise_of_the_force_is_the_expected_one(twist, noise, rate_hz):
-    """The noise of the force is that of the report within 15 %."""
+    """The noise of the force is the reported one within 15 %."""
     simulator = OtherSimulator('motion_1', rate_hz, 40.0).noisy(**noise)
     _, truths = simulator.adapted(twist=twist)
     exact = simulator.motion.at(np.array([truth.t_ns for truth in truths])).f_ib_b
@@ -62,7 +62,7 @@ def test_the_noise_of_the_force_is_the_expected_one(twist, noise, rate_hz):
 @pytest.mark.parametrize('rate_hz', [20.0, 50.0, 100.0])
 @pytest.mark.parametrize('name', ['racetrack', 'sinusoids', 'aggressive'])
 def test_the_frame_of_the_twist_is_found(name, rate_hz):
-    """The frame of the twist, parent or child, is found, and the twist fits."""
+    """The frame of the twist, parent or child, is found, and the twist agrees with the poses."""
     for parent in (False, True):
         simulator = OtherSimulator(name, rate_hz, 2.0)
         j = judgement_of(simulator.parent_twist() if parent else simulator)
@@ -85,7 +85,7 @@ def test_a_twist_noisier_than_the_poses_is_left():
 
 
 def resting_first(simulator, rest_s):
-    """Let the motion of a simulator begin after a rest at its first pose with zero twist."""
+    """Prepend to the motion of a simulator a rest at its first pose with zero twist."""
     count = round(rest_s / 1e-9 / (simulator.t_ns[1] - simulator.t_ns[0]))
     simulator.t_ns = np.arange(len(simulator.t_ns) + count) * simulator.t_ns[1]
     for name in 'rqvw':
@@ -98,7 +98,7 @@ def resting_first(simulator, rest_s):
 @pytest.mark.parametrize('twist, wanted', [(True, 'the twist is believed'),
                                            (False, 'only the poses')])
 def test_a_vehicle_at_rest_is_judged_when_it_moves(twist, wanted):
-    """The twist of a vehicle at rest is judged once the vehicle moves."""
+    """The twist is not classified at rest, but as soon as the vehicle moves."""
     simulator = OtherSimulator('sinusoids', 50.0, 8.0)
     if not twist:
         simulator.without_twist()
@@ -110,7 +110,7 @@ def test_a_vehicle_at_rest_is_judged_when_it_moves(twist, wanted):
 
 
 def test_a_twist_that_goes_wrong_is_given_up():
-    """If the twist is no longer sent, it is rejected within two judgements of two seconds."""
+    """A twist that becomes zero is rejected within two examinations of two seconds."""
     simulator = OtherSimulator('racetrack', 50.0, 12.0)
     simulator.v[250:] = simulator.w[250:] = 0.0
     adapter, truths = simulator.adapted()
@@ -125,7 +125,7 @@ def test_a_twist_that_goes_wrong_is_given_up():
     ('use', 'the twist is believed although it is missing'),
     ('ignore', 'poses are used, not the twist (parameter twist is ignore)')])
 def test_a_choice_is_kept(twist, said):
-    """With twist use or ignore the scheme is fixed; the report tells what auto would do."""
+    """With twist use or ignore the scheme is fixed; the report states what auto would choose."""
     simulator = OtherSimulator('racetrack', 50.0, 5.0)
     if twist == 'use':
         simulator.without_twist()
@@ -134,7 +134,7 @@ def test_a_choice_is_kept(twist, said):
 
 
 def test_the_world_is_turned_by_its_yaw():
-    """A world whose x axis points North gives the same truth as one whose x axis points East."""
+    """A world whose x axis points north gives the truth of one whose x axis points east."""
     plain, turned = (OtherSimulator('sinusoids', 50.0, 4.0) for _ in range(2))
     c, s = 0.0, 1.0
     x, y, z = turned.r.T
@@ -212,7 +212,7 @@ def test_the_truth_has_its_own_rate(truth_rate_hz):
 
 
 def test_memory_is_bounded():
-    """The stage keeps only two seconds of knots and what the curves need, however long it runs."""
+    """The stage stores only two seconds of knots and what the curves need, in any run."""
     adapter = TruthAdapter(build(TruthAdapterSettings, PLACE))
     simulator = OtherSimulator('racetrack', 200.0, 30.0)
     for row in simulator.samples():

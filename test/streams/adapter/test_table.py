@@ -4,7 +4,7 @@ import pytest
 from support.other_simulators import AdaptedRun, MOTIONS, OtherSimulator
 
 # Bounds of a row by rate of the input (Hz), in m/s^2, rad/s, m (own closure) and m (closed form).
-# They are the specified bounds of the schemes; the values found are printed.
+# They are the specified bounds of the schemes; measured values are printed.
 TWIST = {20: (3e-3, 2e-4, 5e-3, 1.5), 50: (1e-4, 1e-5, 5e-3, 0.05), 100: (1e-4, 2e-6, 5e-3, 0.05),
          400: (1e-4, 2e-6, 5e-3, 0.05)}
 POSES = {20: (2e-2, 2e-4, 5e-3, 0.2), 50: (2e-3, 1e-5, 5e-3, 0.2), 100: (3e-4, 2e-6, 5e-3, 0.2),
@@ -13,7 +13,7 @@ PLACES = {20: (1e-3, 2e-4, 5e-3, 0.5), 50: (1e-3, 1e-5, 5e-3, 0.5), 100: (1e-3, 
           400: (1e-3, 2e-6, 5e-3, 0.5)}
 NOISE = {20: (0.15, 6e-4, 0.1, None), 50: (0.25, 6e-4, 0.1, None), 100: (0.4, 6e-4, 0.1, None),
          400: (0.4, 6e-4, 0.1, None)}
-# Each row: how the exact input is changed, its bounds, and the largest error of the path, m.
+# Each row: how the exact input is changed, its bounds, and the greatest error of the path, m.
 ROWS = {
     'exact twist': (lambda s: s, TWIST, 0.05),
     'no twist': (OtherSimulator.without_twist, POSES, 0.05),
@@ -36,7 +36,7 @@ def held(row, motion, rate_hz, length_s):
     print(f'\n{row}, {motion}, {rate_hz} Hz: {found[0]:.2g} m/s^2, {found[1]:.2g} rad/s, '
           f'closure {found[2]:.2g} m, {found[3]:.2g} m, path {found[4]:.2g} m\n{adapter.notes}')
     assert len(adapter.notes) == 1
-    # After two seconds of judgement, truth is late by at most three periods of the knots.
+    # After two seconds of examination, truth is late by at most three periods of the knots.
     assert 2.01e9 >= truths[0].t_ns >= 2e9 - 3.5e9 / min(rate_hz, 100)
     for value, bound in zip(found, (*bounds[rate_hz], path_m)):
         assert bound is None or value <= bound

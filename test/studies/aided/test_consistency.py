@@ -1,7 +1,7 @@
 """
-NEES and NIS of ensembles of the aided chain, at each instant over the runs.
+NEES and NIS of ensembles of aided runs, at each instant over the runs.
 
-A hundred flights take long and are made by ``make figures``. A few short ones show whether a
+A hundred flights take long and are simulated by ``make figures``. A few short ones show whether a
 filter still knows the size of its errors.
 """
 
@@ -68,9 +68,7 @@ def test_a_few_flights_with_the_instrument_of_the_model():
 
 
 def test_a_filter_that_believes_in_too_good_an_instrument_is_found_out():
-    """
-    Accelerometers with ten times the assumed bias are outside of the intervals for six flights.
-    """
+    """With ten times the assumed accelerometer bias six flights are outside the intervals."""
     worse = 'accelerometer.errors.turn_on_bias_sigma_ug:=[2000.0, 2000.0, 2000.0]'
     sums = block(consistency((), (*SHORT, *MODEL, worse), FEW, 1, 4), 'state')
     assert sums.mean[-1] > 10.0 * sum_intervals(sums, 0.999)[1][-1]
@@ -80,11 +78,11 @@ def test_a_filter_that_believes_in_too_good_an_instrument_is_found_out():
 @pytest.mark.parametrize('case', CASES)
 def test_a_hundred_flights(case, figures):
     """
-    NEES at the end and NIS of every fix, compared with the 95 % intervals for a hundred flights.
+    NEES at the end and NIS of every fix are in their 95 % intervals for a hundred flights.
 
-    With errors that the filter models NEES and NIS are inside. With each of the instruments NIS is
-    inside at 95 % of the fixes, within the scatter due to their number (three sigma). NEES of the
-    instruments is recorded; docs/design/aided_ensembles.md explains it.
+    This holds for errors that the filter models. With each of the instruments NIS is inside at 95
+    % of the fixes, within the scatter due to their number (three sigma). NEES of the instruments
+    is recorded; docs/design/aided_ensembles.md explains it.
     """
     files, assignments = CASES[case]
     found = consistency(files, (*FLIGHT, *assignments), FLIGHTS, 0)

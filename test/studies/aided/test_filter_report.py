@@ -12,7 +12,7 @@ TIMES_S = np.arange(0.0, 3001.0, 5.0)
 
 
 def flight(end_m, sigma_m=np.nan, square=np.nan, nis=()):
-    """Return a FilterFlight whose error grows evenly, the same east and north."""
+    """Return a FilterFlight whose error grows linearly, the same east and north."""
     error = np.zeros((len(TIMES_S), 3))
     error[:, :2] = (end_m / np.sqrt(2.0) * TIMES_S / TIMES_S[-1])[:, None]
     freedom = np.tile([2, 2, 0, 4], (len(TIMES_S), 1)) * np.isfinite(square)
@@ -34,7 +34,7 @@ def study():
 
 
 def test_the_answer():
-    """The best filter is compared with the next one; those outside NIS or NEES are named."""
+    """The best filter is compared with the next one; filters outside NIS or NEES are named."""
     rows, _ = study()
     assert answer(rows, 3000.0) == (
         'Of 5 filters over 12 flights of 50 min, eskf, N 1000, was best: rms horizontal error at '
@@ -45,7 +45,7 @@ def test_the_answer():
 
 
 def test_rows_have_nees_at_the_end():
-    """NEES at the end: mean over flights, interval of the chi-square sum, degrees of freedom."""
+    """Rows have NEES at the end: mean over flights, chi-square interval, degrees of freedom."""
     rows, _ = study()
     by = {row.name: row for row in rows}
     assert by['free, N 1000'].nees == {}
@@ -59,7 +59,9 @@ def test_rows_have_nees_at_the_end():
 
 def test_equal_curves_are_one_with_both_names():
     """
-    Equal curves are drawn once with both names; a filter has one colour, its windows have dashes.
+    Equal curves are drawn once with both names.
+
+    A filter has one colour, and its windows have different dashes.
     """
     rows, flights = study()
     errors, consistency, shown = charts_of(rows, flights)
@@ -79,14 +81,12 @@ def test_equal_curves_are_one_with_both_names():
     (2.0, 'consistent'), (4.0, 'too optimistic'), (0.5, 'too pessimistic'),
     (np.nan, ''), (None, '')])
 def test_where_a_mean_lies(mean, words):
-    """The position of a mean relative to its interval is stated in words."""
+    """The text states whether a mean lies in, below or above its interval."""
     assert judged(mean, 1.0, 3.0) == words
 
 
 def test_cases():
-    """
-    The first window is used for all filters, the others for the eskf; unknown names are refused.
-    """
+    """The first window is used for all filters, others for eskf; unknown names are refused."""
     assert cases_of(['free', 'eskf', 'free'], [100, 10]) == (
         FilterCase('free', 100), FilterCase('eskf', 100), FilterCase('eskf', 10))
     with pytest.raises(ValueError, match="filter is 'ukf'; expected one of free, conventional"):

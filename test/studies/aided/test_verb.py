@@ -1,6 +1,4 @@
-"""
-The command monte-carlo --aided: the same numbers for any number of workers, and its worst run.
-"""
+"""The command monte-carlo --aided: equal numbers for any number of workers, and the worst run."""
 
 import json
 import re
@@ -22,7 +20,9 @@ def ensemble(folder, *words, runs=4):
 
 def test_jobs_change_no_bit_and_the_worst_run_flies_alone(tmp_path, capsys, monkeypatch):
     """
-    One and two processes give one digest; the command for the worst run gives its end, to the bit.
+    One and two processes give one digest; the command of the worst run gives its end.
+
+    The end agrees to the bit.
     """
     monkeypatch.chdir(tmp_path)
     gnss = ['-p', 'gnss_model.use:=true']
@@ -52,7 +52,7 @@ def test_jobs_change_no_bit_and_the_worst_run_flies_alone(tmp_path, capsys, monk
 
 
 def test_a_filter_without_a_covariance(tmp_path, capsys):
-    """A filter without covariance has errors but no NEES, and a message says so."""
+    """A filter without covariance has errors but no NEES, and a message states this."""
     summary, arrays = ensemble(tmp_path / 'a', '-p', 'filter:=conventional', '--jobs', '1',
                                runs=2)
     told = ' '.join(capsys.readouterr().out.split())
@@ -85,7 +85,7 @@ def test_a_run_that_is_refused_is_named(tmp_path, capsys):
     (['-p', 'gnss.rate_hz:=30.0'], 'expected a multiple of the period of rate_hz'),
     (['--runs', '0'], 'runs is 0; expected a whole number from 1 to 10000000')])
 def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
-    """Bad input gives exit code 2 before a worker starts, and nothing is written."""
+    """Invalid input gives exit code 2 before a worker starts, and nothing is written."""
     assert main([*WORDS, '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1 and not list(tmp_path.iterdir())

@@ -1,4 +1,4 @@
-"""Budgets that several tests use."""
+"""Error budgets that several tests use."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The budget compared with ensembles: inside 99.9 % intervals while linear theory applies."""
+"""The budget compared with ensembles: inside 99.9 % intervals while linear theory holds."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,11 @@ def test_intervals_of_a_thousand_runs():
 
 
 def test_scatter_of_the_horizontal_rms():
-    """The scatter is sqrt((s_N^4 + s_E^4)/2n)/(s_N^2 + s_E^2); 10000 draws with a mean agree."""
+    """
+    The scatter of the horizontal rms is sqrt((s_N^4 + s_E^4)/2n)/(s_N^2 + s_E^2).
+
+    10000 draws with a mean agree.
+    """
     sigma = np.array([4300.0, 8600.0])
     wanted = np.sqrt(np.sum(sigma ** 4) / 2000.0) / np.sum(sigma ** 2)
     found = rms_scatter(np.diag(sigma ** 2)[None], np.zeros((1, 2)), 1000)[0]
@@ -42,9 +46,7 @@ def test_the_scatter_of_that_fog(fog):
 
 
 def test_an_ensemble_of_another_instrument_differs():
-    """
-    1000 runs with 1.15 times the sigma of the budget are marked; those with the right one are not.
-    """
+    """1000 runs with 1.15 times the sigma of the budget are marked, runs with its sigma not."""
     t_s = np.array([0.0, 10.0])
     p = np.zeros((1, 2, 9, 9))
     p[0, 1] = np.diag([4.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1e-8, 1e-8, 1e-6])
@@ -66,9 +68,9 @@ def test_an_ensemble_of_another_instrument_differs():
     pytest.param(MEMS, 1000, 3600.0, marks=pytest.mark.figures)])
 def test_ensemble_is_inside_its_interval(instrument, runs, seconds, figures):
     """
-    On the racetrack every quantity is inside at every instant, unless linear theory has ended.
+    On the racetrack every quantity is inside its interval until linear theory ends.
 
-    The hour of 1000 runs takes minutes and is made by ``make figures``.
+    The hour of 1000 runs takes minutes and is simulated by ``make figures``.
     """
     settings = ins_sim.read_settings(['racetrack', instrument], {'duration_s': seconds})
     budget = ins_sim.budget(settings, runs=runs)

@@ -1,4 +1,4 @@
-"""Circular error probable for any covariance and mean."""
+"""Circular error probable (CEP) for any covariance and mean."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from ins_sim.studies.error_circle import error_circle
     (1.0, 1.17741, 2.44775), (0.5, 0.87042, 2.03586), (0.2, 0.70585, 1.97041),
     (0.0, 0.67449, 1.95996)])
 def test_factors_by_the_ratio_of_the_axes(ratio, half, most):
-    """K50 and K95 relative to the larger sigma, for any orientation of the ellipse."""
+    """K50 and K95 relative to the larger sigma are right for any orientation of the ellipse."""
     for angle in (0.0, 0.7, 2.0):
         c, s = np.cos(angle), np.sin(angle)
         turn = np.array([[c, -s], [s, c]])
@@ -31,7 +31,7 @@ def test_with_a_mean_it_is_the_quantile_of_draws():
 
 
 def test_without_scatter_it_is_the_mean():
-    """The radius is the length of the mean for almost no scatter and for none."""
+    """With almost no scatter, or none, the radius is the length of the mean."""
     mean = np.array([[3.0, 4.0], [3.0, 4.0], [0.0, 0.0]])
     p = np.stack([np.zeros((2, 2)), 1e-16 * np.eye(2), np.zeros((2, 2))])
     assert error_circle(mean, p, 0.5) == pytest.approx([5.0, 5.0, 0.0], abs=1e-6)

@@ -37,7 +37,7 @@ COMMON = {'temperature.ramp_c_h': 60.0, 'strapdown:output_every': 100,
 
 
 def values_of(key):
-    """Return the values of one fixed error."""
+    """Return the settings of one fixed error."""
     value = FIXED[key]
     return value if isinstance(value, dict) else {key: value}
 
@@ -64,7 +64,7 @@ def check(linear, found, parts):
 @pytest.mark.slow
 @pytest.mark.parametrize('key', FIXED)
 def test_one_error_alone(key):
-    """Racetrack, 100 s: the budget agrees with a simulation of this error alone within 4e-3."""
+    """On 100 s of racetrack the budget of each single error agrees with a simulation to 4e-3."""
     linear, found = budget_and_run('racetrack', {'duration_s': 100.0, **values_of(key)})
     assert [source.key for source in linear.fixed] == [key]
     check(linear, found, 4e-3)
@@ -72,7 +72,11 @@ def test_one_error_alone(key):
 
 @pytest.mark.parametrize('motion', ['racetrack', 'motion_2'])
 def test_all_errors_at_once(motion):
-    """One minute with every fixed error: 2e-3, and the rotation of the axes, of second order."""
+    """
+    With all fixed errors one minute agrees to 2e-3, and to the rotation of the axes.
+
+    The rotation of the axes is of second order.
+    """
     values = {'duration_s': 60.0}
     for key in FIXED:
         values.update(values_of(key))
@@ -83,7 +87,7 @@ def test_all_errors_at_once(motion):
 
 @pytest.mark.parametrize('source', ['stream', 'motion'])
 def test_the_start_of_lags(source):
-    """Navigation that starts two seconds later, or an IMU fed by the motion, agrees as well."""
+    """If navigation starts 2 s later, or a motion feeds the IMU, the budget agrees as well."""
     for after_s in (0.0, 2.0):
         linear, found = budget_and_run('motion_2', {
             'duration_s': 20.0, 'initial.after_s': after_s, 'imu_sensor:source': source,
@@ -94,8 +98,9 @@ def test_the_start_of_lags(source):
 @pytest.mark.parametrize('channel', ['free', 'damped'])
 def test_the_vertical_channel(channel):
     """
-    A velocity error of 0.1 m/s upwards: free, it follows the gravity gradient; damped, it
-    vanishes.
+    An upward velocity error of 0.1 m/s follows the gravity gradient if free.
+
+    If the channel is damped, it vanishes.
     """
     linear, found = budget_and_run('racetrack', {
         'duration_s': 60.0, 'vertical.channel': channel, 'vertical.time_constant_s': 5.0,

@@ -31,9 +31,7 @@ def test_random_parts_bear_longer_steps(monkeypatch):
 
 
 def test_an_endless_process_is_a_walk():
-    """
-    Gauss-Markov with infinite correlation time is a random walk with its sigma after an hour.
-    """
+    """A Gauss-Markov process with infinite time constant is a random walk with sigma at 1 h."""
     times = [np.inf, 300.0, 300.0]
     walk = budget({GYRO + 'rate_random_walk_deg_h_sqrt_h': [0.5, 0.0, 0.0]})
     endless = budget({GYRO + 'gauss_markov_sigma_deg_h': [0.5, 0.0, 0.0],
@@ -46,22 +44,20 @@ def test_an_endless_process_is_a_walk():
 
 
 def test_a_slow_process_is_a_bias_and_a_fast_one_is_white():
-    """A time constant of 1e9 s is a turn-on bias; one of 1 ms is white noise with 2 sigma^2 T."""
+    """A time constant of 1e9 s gives a turn-on bias, one of 1 ms white noise with 2 sigma^2 T."""
     bias = budget({FORCE + 'turn_on_bias_sigma_ug': 100.0})
     slow = budget({FORCE + 'gauss_markov_sigma_ug': 100.0, FORCE + 'gauss_markov_time_s': 1e9})
     assert slow.rms() == pytest.approx(bias.rms(), rel=1e-6)
     density = 1000.0 * 9.80665e-6 * np.sqrt(2.0 * 1e-3)
     white = budget({FORCE + 'noise_density_m_s2_sqrt_hz': density})
     fast = budget({FORCE + 'gauss_markov_sigma_ug': 1000.0, FORCE + 'gauss_markov_time_s': 1e-3})
-    # After the time t the variance of a process with correlation time T is short by the fraction
+    # After the time t the variance of a process with correlation time T is smaller by the fraction
     # T/t.
     assert fast.rms()[60:] == pytest.approx(white.rms()[60:], rel=1e-4)
 
 
 def test_a_walk_has_run_before_the_navigation():
-    """
-    A random walk starts at motion time zero: at the start of navigation it is a bias of K sqrt(t).
-    """
+    """A walk starts at motion time zero: at the start of navigation it is a bias of K sqrt(t)."""
     key = GYRO + 'rate_random_walk_deg_h_sqrt_h'
     same = {'motion.kind': 'static', 'duration_s': 300.0}
     late = budget({key: 0.5, **same, 'duration_s': 600.0, 'initial.after_s': 300.0}, []).rms()
@@ -72,7 +68,7 @@ def test_a_walk_has_run_before_the_navigation():
 
 
 def test_axes_add_up():
-    """The variances by axis of each source add up to its variance; one axis alone has its own."""
+    """The variances of the axes of each source add up to its variance; one axis has its own."""
     values = {GYRO + 'turn_on_bias_sigma_deg_h': [1.0, 2.0, 3.0],
               GYRO + 'bias_instability_deg_h': [0.1, 0.0, 0.3],
               FORCE + 'velocity_random_walk_m_s_sqrt_h': [0.1, 0.2, 0.0]}
@@ -89,8 +85,9 @@ def test_axes_add_up():
 @pytest.mark.parametrize('motion', ['racetrack', 'motion_2'])
 def test_against_the_covariance_of_the_strapdown(motion):
     """
-    The budget agrees with the navigator's covariance, whose steps rotate by up to 0.6 rad:
-    0.6^2/24/2.
+    The budget agrees with the covariance of the navigator to 0.6^2/24/2.
+
+    The steps of the navigator rotate by up to 0.6 rad.
     """
     settings = ins_sim.read_settings(motion, {
         'duration_s': 100.0, 'strapdown:output_every': 100,
@@ -115,7 +112,7 @@ def test_against_the_covariance_of_the_strapdown(motion):
 
 
 def test_the_variance_of_a_mean():
-    """2 (x - 1 + exp(-x))/x^2, also where its terms cancel."""
+    """The variance of a mean is 2 (x - 1 + exp(-x))/x^2, also where these terms cancel."""
     x = np.array([1e-12, 1e-6, 0.01, 0.0999999, 0.1000001, 1.0, 30.0, 1e4])
     expected = [1.0, 1.0 - 1e-6 / 3.0]
     expected += [float(2.0 * (v - 1.0 + np.exp(-v)) / v ** 2) for v in x[2:]]

@@ -1,4 +1,4 @@
-"""Values found by an independent model of the same errors (own code, and 40 runs)."""
+"""Values computed by an independent model of the same errors (own code, and 40 runs)."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ RANDOM_PARTS = {
 
 @pytest.mark.parametrize('rotation, column, tolerance', [(False, 1, 1e-3), (True, 2, 2e-3)])
 def test_each_error_at_rest(rotation, column, tolerance):
-    """Each error on all axes alone: 1e-3 without, 2e-3 with the rotation of the Earth."""
+    """At rest each error on all axes agrees to 1e-3, with the rotation of the Earth to 2e-3."""
     settings = ins_sim.read_settings([], {
         **REST, 'earth.rotation': rotation, **{key: row[0] for key, row in AT_REST.items()}})
     found = ins_sim.budget(settings)
@@ -38,7 +38,7 @@ def test_each_error_at_rest(rotation, column, tolerance):
 
 
 def test_racetrack_with_the_fog(fog):
-    """Horizontal rms after 600, 1800 and 3600 s within 0.5 %, and the ranking of the sources."""
+    """FOG: horizontal rms after 600, 1800 and 3600 s to 0.5 %, and the order of the sources."""
     found = [fog.rms()[fog.linear.at(t)] for t in RANDOM_PARTS]
     assert found == pytest.approx([977.0, 6255.9, 9656.6], rel=5e-3)
     made = {s.key: s.label for s in fog.sources}
@@ -52,9 +52,7 @@ def test_racetrack_with_the_fog(fog):
 
 
 def test_racetrack_with_the_mems(mems):
-    """
-    Horizontal rms within 0.5 %; the azimuth error is 7 deg, where linear theory is approximate.
-    """
+    """MEMS: horizontal rms to 0.5 %; with 7 deg of azimuth error linear theory is approximate."""
     found = [mems.rms()[mems.linear.at(t)] for t in RANDOM_PARTS]
     assert found == pytest.approx([6593.4, 42010.0, 63518.0], rel=5e-3)
     assert np.degrees(mems.rms('azimuth')[-1]) == pytest.approx(7.0, abs=0.5)
@@ -62,7 +60,7 @@ def test_racetrack_with_the_mems(mems):
 
 
 def test_what_must_improve_for_a_mile(fog):
-    """1852 m: no single source suffices; all random ones by 0.1756, or everything by 0.1918."""
+    """For 1852 m no single source suffices: all random ones by 0.1756, or everything by 0.1918."""
     found = fog.requirement('horizontal rms 1852 m at 3600 s')
     assert not found.met and all(i.factor is None for i in found.alone)
     assert found.alone[0].source.label == 'gyro turn-on bias'
@@ -72,7 +70,7 @@ def test_what_must_improve_for_a_mile(fog):
 
 
 def test_what_must_improve_for_four_miles(fog):
-    """7408 m: a turn-on bias of 0.6827 deg/h; with it the budget meets the requirement."""
+    """For 7408 m a turn-on bias of 0.6827 deg/h suffices; with it the requirement is met."""
     found = fog.requirement('horizontal rms 7408 m at 1 h')
     enough = [i for i in found.alone if i.factor is not None]
     assert [i.source.label for i in enough] == ['gyro turn-on bias']
@@ -85,7 +83,7 @@ def test_what_must_improve_for_four_miles(fog):
 
 
 def test_the_parts_make_the_whole(fog):
-    """rms^2 = trace P + |fixed|^2, at every instant and for every quantity."""
+    """rms^2 = trace P + |fixed|^2 at every instant and for every quantity."""
     linear = fog.linear
     for name, axes in (('horizontal', [0, 1]), ('velocity', [3, 4]), ('azimuth', [8])):
         variance = np.diagonal(linear.total_covariance(), axis1=1, axis2=2)[:, axes].sum(axis=1)
@@ -96,7 +94,7 @@ def test_the_parts_make_the_whole(fog):
 @pytest.mark.slow
 @pytest.mark.parametrize('motion', [{'motion.kind': 'static'}, {'motion.kind': 'cruise'}])
 def test_linear_theory_ends_for_the_mems_at_rest(motion):
-    """Linear theory ends at rest and on the cruise after half an hour, by rotation of the axes."""
+    """At rest and on the cruise linear theory ends after 30 minutes, by rotation of the axes."""
     found = ins_sim.budget(ins_sim.read_settings('imu_tactical_mems',
                                                  {'duration_s': 3600.0, **motion}))
     assert 1500.0 < found.linear_until() < 2100.0

@@ -1,4 +1,4 @@
-"""The verb budget and its folder, and the same from Python."""
+"""The command budget and its folder, and the same from Python."""
 
 import json
 
@@ -79,7 +79,7 @@ def test_python_says_the_same(study, tmp_path):
 
 
 def refused(capsys, *words):
-    """Return the message with which the verb refuses, exit code 2."""
+    """Return the message with which the command refuses, exit code 2."""
     assert main(['budget', *words]) == 2
     captured = capsys.readouterr()
     assert captured.err.count('\n') == 1 and captured.err.startswith('ins_sim budget: ')
@@ -91,7 +91,7 @@ def refused(capsys, *words):
     'horizontal rms nan m at 60 s', 'azimuth cep50 1 deg at 60 s', 'azimuth rms 3 m at 60 s', '',
     'horizontal rms 1 m at 60 s please', 'horizontal rms 1e400 m at 60 s', 'x' * 5000])
 def test_a_misspelt_requirement_gets_the_grammar(text, tmp_path, capsys):
-    """A misspelt requirement is answered by the grammar before anything is computed or written."""
+    """A misspelt requirement is answered by the grammar before anything is computed."""
     said = refused(capsys, *FILES, '--require', text, '-o', str(tmp_path / 'b'))
     assert 'QUANTITY STATISTIC NUMBER UNIT at NUMBER TIME' in said and len(said) < 800
     assert not (tmp_path / 'b').exists()
@@ -130,7 +130,7 @@ def test_damaged_studies_are_refused(study, tmp_path, capsys):
 
 
 def test_a_requirement_that_is_met_is_said(capsys, tmp_path):
-    """A requirement that is met is reported; instruments without errors have a budget of zero."""
+    """A requirement that is met is stated; instruments without errors have a budget of zero."""
     assert main(['budget', '--params-file', 'racetrack', '-p', 'duration_s:=10.0', '--require',
                  'horizontal cep50 1 m at 10 s', '-o', str(tmp_path / 'b')]) == 0
     said = capsys.readouterr().out
@@ -139,9 +139,7 @@ def test_a_requirement_that_is_met_is_said(capsys, tmp_path):
 
 @pytest.mark.slow
 def test_what_linear_theory_does_not_cover_is_said(capsys, tmp_path):
-    """
-    Limits of linear theory are reported: an azimuth sigma of 20 deg; an input beyond the range.
-    """
+    """Limits of linear theory are stated: an azimuth sigma of 20 deg, and rates out of range."""
     assert main(['budget', '--params-file', 'motion_2', '-p', 'duration_s:=10.0', '-p',
                  'initial.azimuth_sigma_mrad:=350.0', '-p',
                  'gyro.errors.saturation_deg_s:=[40.0, 40.0, 40.0]', '--runs', '16', '-p',
@@ -154,7 +152,7 @@ def test_what_linear_theory_does_not_cover_is_said(capsys, tmp_path):
 
 
 def test_two_errors_that_cancel_need_both():
-    """If fixed errors alone exceed a requirement, a message says that no random one helps."""
+    """If fixed errors alone exceed a requirement, a message states that no random one helps."""
     settings = ins_sim.read_settings('racetrack', {
         'duration_s': 60.0, 'gyro.errors.bias_deg_h': 10.0,
         'gyro.errors.turn_on_bias_sigma_deg_h': 1.0})
@@ -188,7 +186,9 @@ def test_sensitivities_are_derivatives():
 
 def test_instants_that_are_not_compared_are_counted(tmp_path, capsys):
     """
-    Of 10 intervals a budget of 360 contains all instants, of 7 the last one; one run has none.
+    A budget of 360 intervals has all instants of 10 intervals, but only the last of 7.
+
+    With one run nothing is compared.
     """
     said = []
     for instants, runs in ((11, 2), (8, 2), (11, 1)):
@@ -215,13 +215,13 @@ def test_ideal_instruments_are_not_said_to_agree(capsys, tmp_path):
 
 
 def test_an_empty_name_of_a_study_is_refused(capsys, tmp_path):
-    """An empty name of a study is not taken for no comparison."""
+    """An empty name of a study is refused."""
     assert 'holds no ensemble.npz' in refused(
         capsys, *FILES, '--beside', '', '-o', str(tmp_path / 'b'))
 
 
 def test_a_factor_is_never_shown_as_zero(capsys, tmp_path):
-    """The factor of a requirement that asks for a billionth is not shown as zero."""
+    """The factor of a requirement that needs a billionth is not printed as zero."""
     assert main(['budget', *FILES, '--require', 'horizontal rms 1e-9 m at 60 s', '-o',
                  str(tmp_path / 'b')]) == 0
     assert 'all errors x 1.2' in ' '.join(capsys.readouterr().out.split())

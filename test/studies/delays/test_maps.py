@@ -30,8 +30,9 @@ def mean_over_time(settings, span_s=None):
                                                   (0.002, 0.4), (1.2, 0.001), (-1.0, -0.5)])
 def test_drift_over_the_rates_is_the_mean_over_time(psi_rate, gamma_rate):
     """
-    Drift over the rates equals a sum over instants 0.0125 s apart, within their distance over the
-    time.
+    The drift over the rates equals a sum over instants 0.0125 s apart.
+
+    It may differ by this interval divided by the time.
     """
     span_s = 300.0
     shows = figure('rates', duration_s=span_s, start_s=7.0, motion__theta_deg=20.0,
@@ -41,7 +42,7 @@ def test_drift_over_the_rates_is_the_mean_over_time(psi_rate, gamma_rate):
     drift = TwoAxisDrift(shows.simulation)
     expected = mean_over_time(shows.simulation, span_s)
     found = drift.mean(psi_rate, gamma_rate)
-    # The largest w x T w, over the first and the last instant.
+    # The largest w x T w, at the first and the last instant.
     largest = 4e-6 * (abs(psi_rate) + abs(gamma_rate)) ** 2
     assert (found.real, found.imag) == pytest.approx(expected[:2],
                                                      abs=0.0125 / span_s * largest)
@@ -51,6 +52,8 @@ def test_drift_over_the_rates_is_the_mean_over_time(psi_rate, gamma_rate):
 def test_on_both_lines_it_is_equation_19(theta):
     """
     On both lines the drift is equation (19), except for the incomplete last cycle of an hour.
+
+    Source: Bogdanov and Fomichev 2018.
     """
     settings = figure('rates', motion__theta_deg=theta).simulation
     drift = TwoAxisDrift(settings)
@@ -66,7 +69,7 @@ def test_on_both_lines_it_is_equation_19(theta):
 
 
 def test_width_of_a_resonance(figures):
-    """The drift is half as large where sin x / x is 1/2: 1.05e-3 rad/s for an hour."""
+    """The drift is halved where sin x / x is 1/2: 1.05e-3 rad/s off the resonance for an hour."""
     found = rates_map(figure('rates').simulation)
     half = 2.0 * 1.8954943 / 3600.0
     print(f'\nhalf as high at {found.half_width:.6g} rad/s; sin x / x: {half:.6g}')
@@ -79,9 +82,7 @@ def test_width_of_a_resonance(figures):
 
 
 def test_of_a_shorter_mean_a_resonance_is_wider():
-    """
-    The width scales with the inverse of the time; far from a resonance there is no half width.
-    """
+    """The width is inversely proportional to the time; far off there is no half width."""
     short = rates_map(figure('rates', duration_s=360.0).simulation)
     assert short.half_width == pytest.approx(2.0 * 1.8954943 / 360.0, rel=2e-2)
     off = rates_map(figure('rates', motion__two_axis__psi_rate_rad_s=0.8).simulation)
@@ -128,7 +129,7 @@ def test_drift_of_motion_1_over_psi(figures):
 @pytest.mark.parametrize('theta, gamma, axis', [(0.0, 0.0, 'north'), (-45.0, 0.0, 'north'),
                                                 (20.0, 70.0, 'east'), (60.0, -130.0, 'north')])
 def test_any_axis_is_the_closed_form_and_the_mean_over_time(theta, gamma, axis):
-    """The drift is kappa0 w^2 J1(kappa0) R0 (n x T n), also at large amplitudes."""
+    """For any axis the drift is kappa0 w^2 J1(kappa0) R0 (n x T n), also at large amplitudes."""
     psi = 35.264
     settings = figure('rocking', motion__theta_deg=theta, motion__gamma_deg=gamma,
                       motion__rocking__axis=axis, motion__rocking__amplitude_deg=50.0,
@@ -145,10 +146,11 @@ def test_any_axis_is_the_closed_form_and_the_mean_over_time(theta, gamma, axis):
 
 
 def test_the_direction_decides_the_size_alone():
-    """The drift of a rotated body is that of the map at the direction of the axis."""
+    """The drift of a rotated body is that of the map in the direction of the axis."""
     settings = figure('rocking', motion__theta_deg=-45.0, **WITHOUT_EARTH).simulation
     found = rocking_map(settings, (90.0,))
-    # For a body with psi = 90 deg the axis north is along its right: azimuth -90, elevation 0.
+    # With psi = 90 deg the axis to the north is to the right of the body: azimuth -90 deg,
+    # elevation 0.
     row, column = (np.flatnonzero(values == value)[0] for values, value in (
         (found.elevation_deg, 0.0), (found.azimuth_deg, -90.0)))
     assert np.linalg.norm(found.drift[found.psi_deg == 90.0]) == pytest.approx(

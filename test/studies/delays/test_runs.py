@@ -10,7 +10,7 @@ from ins_sim.studies.delays.study import distinct_runs, gather
 
 ARCMIN = 60.0 * np.degrees(1.0)
 # Latitude and longitude error of motion 2 at 60 min, arcmin, by its detuning in rad/s, and half a
-# unit of their last digit.
+# unit of the last digit.
 SPECIFIED = {0.0: (-2.4100, -0.5962), 0.001: (-0.7498, 2.8011), 0.01: (-0.00935, 0.12526),
              0.1: (-0.00178, 0.01506)}
 HALF_UNIT = {0.0: 5e-5, 0.001: 5e-5, 0.01: 5e-6, 0.1: 5e-6}
@@ -23,7 +23,7 @@ def tuned():
 
 
 def check_end(run, detuning, figures):
-    """Compare the errors after an hour, within 1e-3 of the largest of each curve, and rounding."""
+    """Compare the errors after an hour, to 1e-3 of the largest of each curve and rounding."""
     assert run.t_s[-1] == 3600.0
     assert run.settings.motion_generator.motion.two_axis.detuning_rad_s == detuning
     end, largest = ARCMIN * run.angles[-1], ARCMIN * np.abs(run.angles).max(axis=0)
@@ -36,7 +36,7 @@ def check_end(run, detuning, figures):
 
 def check_prediction(run):
     """
-    The attitude slope agrees within 1e-4 + (w dt)^2/4, the position within 1e-2.
+    The attitude slope agrees to 1e-4 + (w dt)^2/4, the position to 1e-2.
 
     A detuned drift nu rotates; the rotation vector then also grows about Up by half its product
     with nu, and is at most 2 nu / detuning.
@@ -57,7 +57,11 @@ def check_prediction(run):
 
 
 def test_tuned_motion_2_errs_as_specified(tuned, figures):
-    """Latitude -2.4100, longitude -0.5962 arcmin; the twin is exact, the prediction close."""
+    """
+    Motion 2 errs by -2.4100 arcmin in latitude and -0.5962 in longitude, as specified.
+
+    The twin errs by at most 1e-4 m, and the prediction is close.
+    """
     check_end(tuned, 0.0, figures)
     check_prediction(tuned)
     assert tuned.twin.largest.max() <= 1e-4
@@ -68,7 +72,11 @@ def test_tuned_motion_2_errs_as_specified(tuned, figures):
 @pytest.mark.parametrize('detuning', [
     0.001, pytest.param(0.01, marks=pytest.mark.slow), pytest.param(0.1, marks=pytest.mark.slow)])
 def test_detuned_motion_2_errs_as_specified(detuning, figures):
-    """For a rotating drift the slope is predicted, which differs from the mean."""
+    """
+    Motion 2 with detuning errs as specified; the predicted slope is not the mean drift.
+
+    The reason is that the drift rotates.
+    """
     shows = figure('figure_2')
     run = fly_run(shows.runs()[shows.shows.detunings_rad_s.index(detuning)])
     check_end(run, detuning, figures)
@@ -81,7 +89,11 @@ def test_detuned_motion_2_errs_as_specified(detuning, figures):
 @pytest.mark.slow
 @pytest.mark.parametrize('name, key', [('theta_0', 0.0), ('second_resonance', None)])
 def test_other_figures_of_motion_2(name, key):
-    """Theta 0 as published; at the second resonance the same size as at the first one."""
+    """
+    At theta 0 motion 2 errs as published; at the second resonance its drift is as predicted.
+
+    The drift about East is -1/8 cos(theta) (1 + sin(theta)) tau.
+    """
     run = fly_run(figure(name).runs()[0])
     check_prediction(run)
     if key is not None:
@@ -125,7 +137,7 @@ def test_a_run_is_flown_once_for_all_figures():
 
 
 def test_a_long_run_is_kept_in_few_instants():
-    """Both ends are among the instants; the numbers of the run come from all samples."""
+    """The stored instants include both ends; the numbers come from all samples."""
     run = fly_run(figure('figure_1', duration_s=60.0, output_every=1).runs()[3])
     assert len(run.t_s) == 3601 and run.t_s[[0, -1]] == pytest.approx([0.0, 60.0])
     assert (np.diff(run.t_s) > 0.0).all()

@@ -1,4 +1,4 @@
-"""The verb delay-study and its Python function: output and refusals."""
+"""The command delay-study and its Python function: output and refusals."""
 
 import csv
 import json
@@ -24,7 +24,7 @@ STEMS = ('delay_study_figure_1', 'delay_study_figure_3', 'delay_study_figure_3_b
 
 @pytest.fixture(scope='module')
 def study(tmp_path_factory):
-    """Return a study of four figures over 20 s, made by the verb."""
+    """Return a study of four figures over 20 s, written by the command."""
     folder = tmp_path_factory.mktemp('delays') / 'study'
     words = [word for name in NAMES for word in ('--params-file', f'delay_study_{name}')]
     assert main(['delay-study', *words, *SHORT, '-o', str(folder)]) == 0
@@ -32,7 +32,7 @@ def study(tmp_path_factory):
 
 
 def test_files_are_those_of_the_house():
-    """There is one shipped file for each figure and one for recordings; every kind has one."""
+    """Every figure, and the recordings, have one shipped file; every kind of figure has one."""
     files = {path.stem for path in (ROOT / 'config').glob('delay_study_*.yaml')}
     assert files == {*SHIPPED, RECORDED}
     kinds = {figure(name.removeprefix('delay_study_')).shows.figure for name in SHIPPED}
@@ -40,9 +40,7 @@ def test_files_are_those_of_the_house():
 
 
 def test_every_figure_is_a_picture_and_in_the_report(study):
-    """
-    Every figure is a picture of some size; the report has a title for each, tables and the answer.
-    """
+    """Every figure is a picture of some size; the report has its title, tables and the answer."""
     pictures = {path.stem for path in study.glob('*.png')}
     assert pictures == set(STEMS)
     assert all((study / f'{stem}.png').stat().st_size > 10000 for stem in STEMS)
@@ -55,7 +53,7 @@ def test_every_figure_is_a_picture_and_in_the_report(study):
 
 
 def test_the_numbers_are_beside_them(study):
-    """CSV files contain named columns of finite numbers; there is one summary of all runs."""
+    """CSV files have named columns of finite numbers; one summary has all runs."""
     tables = {}
     for path in study.glob('*.csv'):
         with path.open(encoding='utf-8') as stream:
@@ -76,7 +74,7 @@ def test_the_numbers_are_beside_them(study):
 
 
 def test_a_study_is_replaced_only_on_request(study, capsys):
-    """Without --force an existing study is refused with exit code 2."""
+    """Without --force an existing study is kept with exit code 2."""
     assert main(['delay-study', '--params-file', 'delay_study_figure_1', *SHORT, '-o',
                  str(study)]) == 2
     said = capsys.readouterr().err
@@ -84,9 +82,7 @@ def test_a_study_is_replaced_only_on_request(study, capsys):
 
 
 def test_published_numbers_stand_beside_ours():
-    """
-    Published numbers are shown where the run is that of the paper; no published curve is drawn.
-    """
+    """Published numbers are shown for runs of the paper; no published curve is drawn."""
     results = results_of(figure('figure_1', detunings_rad_s=[0.0]))
     drift, place = study_tables(results)[:2]
     assert drift.rows[0][-1] == '0.0334932' and place.rows[0][-1] == '4472.1 / 623.94'
@@ -102,8 +98,9 @@ def test_published_numbers_stand_beside_ours():
 
 def test_small_curves_are_drawn_once_more():
     """
-    Curves below a twentieth of the largest are drawn again; the last panel is run minus
-    prediction.
+    Curves below a twentieth of the largest are drawn again, enlarged.
+
+    The last panel is run minus prediction.
     """
     chart, = figure_charts(results_of(figure('theta_0', duration_s=600.0))[0])
     assert chart.columns == 2 and len(chart.panels) == 6
@@ -131,15 +128,13 @@ def test_maps_name_their_lines():
         assert isinstance(line, Curve) and line.x == pytest.approx(k * line.y)
     runs, = (mark for mark in charts[1].panels[0].marks if mark.label == 'runs')
     curve = charts[1].panels[0].marks[0]
-    # The map neglects the initial shift due to a delay: the rotation in a us, over a minute.
+    # The map neglects the initial shift due to a delay: the rotation in 1 us, over a minute.
     shift = 3600.0 * np.degrees(2e-6) / 60.0
     assert runs.y == pytest.approx(np.interp(runs.x, curve.x, curve.y), abs=shift)
 
 
 def test_from_python(tmp_path):
-    """
-    From Python the numbers are those of the verb, as frames and datasets, with the same folder.
-    """
+    """From Python the numbers are those of the command, as frames, datasets, and a folder."""
     found = ins_sim.delay_study(
         ['delay_study_figure_2', 'delay_study_figure_4', 'delay_study_rates',
          'delay_study_rocking'],
@@ -194,7 +189,7 @@ def test_from_python(tmp_path):
     ('recorded', {'motion.recording.path': 'absent.csv'}, 'absent.csv'),
     ('figure_9', {}, "no config named 'delay_study_figure_9'")])
 def test_bad_input_is_one_sentence(names, more, sentence, tmp_path, capsys, monkeypatch):
-    """Bad input gives exit code 2 and writes nothing; from Python the message is the same."""
+    """Invalid input gives exit code 2 and writes nothing; Python raises the same message."""
     monkeypatch.chdir(tmp_path)
     words = [word for key, value in more.items() for word in ('-p', f'{key}:={json.dumps(value)}')]
     assert main(['delay-study', '--params-file', f'delay_study_{names}', *words, '--jobs', '1',
@@ -212,7 +207,7 @@ def test_bad_input_is_one_sentence(names, more, sentence, tmp_path, capsys, monk
      'two figures are named delay_study_rates'),
     (['--params-file', 'motion_2'], 'motion_2: gyro.delay_us is 0 on every axis')])
 def test_bad_words_are_one_sentence(words, sentence, tmp_path, capsys, monkeypatch):
-    """Bad arguments of the command line give one message."""
+    """Invalid arguments of the command line give one message."""
     monkeypatch.chdir(tmp_path)
     assert main(['delay-study', *words, '-p', 'duration_s:=2.0', '-o', 'out']) == 2
     said = capsys.readouterr().err
@@ -220,7 +215,7 @@ def test_bad_words_are_one_sentence(words, sentence, tmp_path, capsys, monkeypat
 
 
 def test_names_that_are_none():
-    """Unknown names are refused from Python."""
+    """Empty and invalid names are refused from Python."""
     with pytest.raises(ValueError, match='names and recordings are empty; expected at least one'):
         ins_sim.delay_study([])
     with pytest.raises(ValueError, match='recordings is 3; expected a path or a list of paths'):
@@ -230,7 +225,7 @@ def test_names_that_are_none():
 @pytest.mark.slow
 @pytest.mark.filterwarnings('ignore::UserWarning')
 def test_a_recorded_flight_is_one_more_figure(shared_data, tmp_path):
-    """A run ends with its recording, with a note; delays cause metres at most."""
+    """With a recording the run ends with it, with a note; delays cause less than 5 m."""
     path = shared_data / 'flights' / 'uavcircuit_umn_thor_fl75.csv.gz'
     found = ins_sim.delay_study([], {'motion.recording.smoothing_s': 1.0}, path, jobs=1)
     result, = found.results

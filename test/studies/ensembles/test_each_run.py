@@ -1,4 +1,4 @@
-"""Runs that cannot go side by side are simulated one by one, with the same statistics."""
+"""Runs that cannot be computed side by side are simulated one by one, with equal statistics."""
 
 from ins_sim import parameter_files, resources
 from ins_sim.core.ensemble.many_runs import in_lanes, simulate_runs
@@ -28,7 +28,7 @@ def same(a, b):
 
 
 def test_both_ways_give_the_same_bits():
-    """Settings that allow both ways give the same bits side by side and one by one."""
+    """Settings that allow both give the same bits side by side and one by one."""
     settings = settings_of('racetrack', 'imu_tactical_fog', 'initial.after_s:=0.5')
     motion, instants = read_motion(settings.motion_generator), np.array([0.1, 1.0, 2.5, 4.0])
     assert in_lanes(settings)
@@ -69,7 +69,7 @@ def test_each_run_is_the_single_run(words):
 
 
 def test_statistics_that_have_travelled_are_the_same():
-    """Blocks joined in order have the statistics and final values of the whole ensemble."""
+    """Blocks that are joined in order have the statistics and ends of the whole ensemble."""
     settings = settings_of('racetrack', 'imu_tactical_fog')
     motion, instants = read_motion(settings.motion_generator), [0.0, 2.0, 4.0]
     whole = simulate_runs(settings, motion, range(40), instants)
@@ -87,7 +87,7 @@ def test_statistics_that_have_travelled_are_the_same():
 
 
 def test_horizontal_sizes_are_counted():
-    """Horizontal sizes have the rms of both axes, and percentiles within one bin of the runs'."""
+    """Horizontal errors have the rms of both axes, and percentiles within one bin of the runs'."""
     settings = settings_of('racetrack', 'imu_tactical_mems')
     found = simulate_runs(settings, read_motion(settings.motion_generator), range(200), [4.0])
     sizes = np.hypot(found.final_errors[:, 6], found.final_errors[:, 7])
@@ -104,7 +104,7 @@ def test_horizontal_sizes_are_counted():
 
 
 def test_runs_without_output_are_refused():
-    """Runs without output are refused in one sentence, also one by one."""
+    """Runs without output are refused with one message, also one by one."""
     settings = settings_of('racetrack', 'orientation:=poisson', 'initial.after_s:=5.0')
     with pytest.raises(ValueError, match='no navigation output'):
         simulate_runs(settings, read_motion(settings.motion_generator), range(2), [1.0])

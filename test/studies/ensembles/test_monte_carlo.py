@@ -1,4 +1,4 @@
-"""The verb monte-carlo and ins_sim.monte_carlo: their output, and what they refuse."""
+"""The command monte-carlo and ins_sim.monte_carlo: their output, and what they refuse."""
 
 import json
 import shlex
@@ -29,7 +29,7 @@ def study():
 
 
 def test_the_verb_writes_what_python_returns(tmp_path, monkeypatch, capsys, study):
-    """The verb writes what Python returns; ``simulate`` repeats the worst run bit for bit."""
+    """The command writes what Python returns; ``simulate`` repeats the worst run to the bit."""
     monkeypatch.chdir(tmp_path)
     assert main([*WORDS, '--runs', '20', '-p', 'run:=5', '-o', 'study']) == 0
     said = capsys.readouterr().out
@@ -86,7 +86,7 @@ def test_tables_for_others(study):
 
 
 def test_runs_that_diverge_are_counted_named_and_left_out():
-    """Of three runs one diverges: it is left out and counted, and the note names it."""
+    """Of three runs one diverges: it is excluded and counted, and a note names it."""
     errors = np.arange(27.0).reshape(1, 3, 9)
     errors[0, 1, 4] = np.nan
     tally = ErrorTally(1)
@@ -103,7 +103,7 @@ def test_runs_that_diverge_are_counted_named_and_left_out():
 
 
 def test_an_ensemble_of_which_all_have_diverged(tmp_path):
-    """An ensemble whose runs all diverged is written with a note, without NaN in figures."""
+    """An ensemble whose runs all diverge is written with a note, without NaN in the summary."""
     tally = ErrorTally(2)
     tally.add(0, np.full((2, 2, 9), np.nan))
     settings = ins_sim.read_settings(NAMES, {'duration_s': 3.0})
@@ -125,7 +125,7 @@ def test_an_ensemble_of_which_all_have_diverged(tmp_path):
     (['--scheduler', 'tcp://host:1'], 'a scheduler is given; expected only one of them'),
     (['-o', '/dev/null/study'], '/dev/null/study cannot be made')])
 def test_what_is_no_ensemble_is_refused(words, reason, tmp_path, monkeypatch, capsys):
-    """Invalid ensembles are refused in one sentence, and nothing is written."""
+    """Invalid ensembles are refused with one message, and nothing is written."""
     monkeypatch.chdir(tmp_path)
     assert main([*WORDS, *words]) == 2
     said = capsys.readouterr().err.splitlines()
@@ -134,7 +134,7 @@ def test_what_is_no_ensemble_is_refused(words, reason, tmp_path, monkeypatch, ca
 
 
 def test_python_refuses_other_settings():
-    """Settings that are not those of a simulation are refused in Python."""
+    """Python refuses settings that are not those of a simulation."""
     with pytest.raises(ValueError, match='settings are dict; expected SimulationSettings or'):
         ins_sim.monte_carlo({'duration_s': 1.0})
 

@@ -35,7 +35,7 @@ def digest(executor, progress=None):
 
 @pytest.fixture(scope='module')
 def alone():
-    """Return the digest of the ensemble in this process alone."""
+    """Return the digest of the ensemble computed in this process alone."""
     with open_executor(1) as executor:
         return digest(executor)
 
@@ -87,7 +87,7 @@ def test_a_cluster_one_worker_of_which_is_killed(alone):
 
 
 def monte_carlo(folder, *words, **more):
-    """Return the Popen of the verb in a folder."""
+    """Return the Popen of the command in a folder."""
     return subprocess.Popen(
         [sys.executable, '-m', 'ins_sim', 'monte-carlo', *WORDS, '--runs', str(RUNS),
          '--instants', '11', '-o', 'study', *words], cwd=folder, text=True,
@@ -97,7 +97,7 @@ def monte_carlo(folder, *words, **more):
 
 @pytest.mark.slow
 def test_an_interrupted_study_goes_on(alone, tmp_path):
-    """An interrupted study finds its finished blocks, and its digest is that of one go."""
+    """A resumed study finds its finished blocks, and its digest is that of a single pass."""
     blocks = tmp_path / 'study.blocks'
     first = monte_carlo(tmp_path, '--jobs', '2')
     while len(list(blocks.glob('block_*.npz'))) < 2 and first.poll() is None:

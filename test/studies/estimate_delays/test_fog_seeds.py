@@ -15,7 +15,7 @@ SET_US = np.array([2.0, 1.0, 3.0])
 
 
 def lag_of_first_order(bandwidth_hz, dt_s, frequency_hz):
-    """Return the phase of mean outputs behind mean inputs divided by the angular frequency, s."""
+    """Return the phase lag of mean outputs behind mean inputs over the angular frequency, s."""
     w, z = 2.0 * math.pi * bandwidth_hz, np.exp(2j * math.pi * frequency_hz * dt_s)
     decay = math.exp(-w * dt_s)
     # The state after an interval is u + decay (x - u), the mean output u + (1 - decay) / (w dt)
@@ -27,9 +27,10 @@ def lag_of_first_order(bandwidth_hz, dt_s, frequency_hz):
 
 def test_the_lag_of_the_fog_is_361_5_us():
     """
-    440 Hz at 100 Hz under a rocking of 1 Hz, by the model and by its frequency response.
+    The lag of the FOG, 440 Hz at 100 Hz, is 361.5 us under an oscillation of 1 Hz.
 
-    The motion is evaluated at whole nanoseconds, which limits the estimate.
+    The model and its frequency response agree. The motion is evaluated at whole nanoseconds, which
+    limits the estimate.
     """
     record, chosen = ideal({**DIAGONAL, **FOG}, 20.0)
     found = 1e6 * model_lags([record], chosen.imu_sensor.gyro.errors)
@@ -98,7 +99,7 @@ def test_motion_2_there_and_back():
 
 
 def test_residuals_that_are_larger_than_the_noise_said_give_the_sigmas():
-    """With a third of the true random walk stated, sigma comes from the scatter and is right."""
+    """If a third of the true random walk is stated, sigma comes from the scatter and is right."""
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 60.0)
     one = read(record, chosen, 1)
     told = estimate_triad([replaced_walk(one, 1.0 / 3.0)])
@@ -111,9 +112,7 @@ def test_residuals_that_are_larger_than_the_noise_said_give_the_sigmas():
 
 
 def test_gaps_cost_their_readings_alone():
-    """
-    A third of the readings lost, and ten seconds at once: the gaps are counted, nothing else lost.
-    """
+    """A third of the readings lost, and 10 s in one part: gaps are counted, the rest is used."""
     record, chosen = ideal({**DIAGONAL, **FOG, **DELAYS}, 60.0)
     one = read(record, chosen, 1)
     count = len(one.imu)

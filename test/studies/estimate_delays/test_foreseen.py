@@ -27,7 +27,11 @@ def foreseen(name, chosen=CHOSEN):
 
 
 def test_rocking_about_the_diagonal():
-    """0.101 us a channel and 0.143 us a difference: FOG, 5 deg, 1 Hz, 600 s."""
+    """
+    FOG, 5 deg, 1 Hz, 600 s: sigma is 0.101 us for a channel and 0.143 us for a difference.
+
+    The oscillation is about the diagonal.
+    """
     found = foreseen('rocking about the diagonal, 5 deg, 1 Hz')
     assert found.refused == ('', '', '')
     assert 1e6 * np.array(found.sigmas) == pytest.approx(0.101, abs=0.0005)
@@ -36,10 +40,10 @@ def test_rocking_about_the_diagonal():
 
 def test_motion_2_reversed_half_way():
     """
-    0.466 us a channel, 0.658 us a difference, of y and z; x rotates uniformly and cannot be
-    estimated.
+    Motion 2 reversed half-way: sigma of y and z is 0.466 us, of their difference 0.658 us.
 
-    N / sqrt(T) divided by the rms of the derivative, 0.5 cos(30 deg) / sqrt(2), is 0.4654.
+    x rotates uniformly and cannot be estimated. N / sqrt(T) divided by the rms of the derivative,
+    0.5 cos(30 deg) / sqrt(2), is 0.4654.
     """
     found = foreseen('motion 2, reversed half-way')
     assert [bool(why) for why in found.refused] == [True, False, False]
@@ -49,7 +53,9 @@ def test_motion_2_reversed_half_way():
 
 def test_motion_2_in_one_sense_cannot_measure_delays():
     """
-    Sigma is 2000 us, because 1 us looks like 0.5 urad of misalignment: refused with this reason.
+    Motion 2 in one direction is refused: sigma is 2000 us.
+
+    A delay of 1 us looks like 0.5 urad of misalignment.
     """
     still = settings(FOG, earth__rotation=False)
     found = foreseen('motion 2 in one sense', still)
@@ -67,7 +73,7 @@ def test_motion_2_in_one_sense_cannot_measure_delays():
 
 def test_the_diagonal_is_best_and_speed_helps():
     """
-    Only two of the motions give three delays, and the diagonal is eleven times better.
+    Only two motions give three delays, and the diagonal is eleven times better.
 
     Sigma is proportional to the inverse of the amplitude and of the square of the frequency; the
     mean over a sampling interval reduces it by sin(x)/x, x = pi f dt.
@@ -89,9 +95,7 @@ def test_the_diagonal_is_best_and_speed_helps():
 
 
 def test_the_map_is_that_of_the_least_squares():
-    """
-    The map of the rocking axis has the sigmas of the least squares for a rocking about that axis.
-    """
+    """The map over rocking axes has the sigmas of the least squares for each axis."""
     single = foreseen('rocking about the forward axis, 5 deg, 1 Hz').sigmas[0]
     for psi, theta in ((35.26438968, -45.0), (20.0, -60.0), (60.0, -30.0)):
         chosen = settings({**DIAGONAL, 'motion.psi_deg': psi, 'motion.theta_deg': theta})
@@ -139,7 +143,11 @@ def test_three_angles_tell_everything():
 
 
 def test_eigenvectors_are_those_of_lapack():
-    """Symmetric matrices of random spectrum over eight decades, and a singular one."""
+    """
+    Eigenvectors equal those of LAPACK for random spectra over eight decades.
+
+    The same holds for a singular matrix.
+    """
     rng = np.random.default_rng(4)
     for count in (1, 2, 5, 8):
         q = np.linalg.qr(rng.normal(size=(count, count)))[0]

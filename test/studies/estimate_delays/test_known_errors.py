@@ -48,14 +48,14 @@ def test_all_errors_come_out_as_they_were_set(output):
 
 
 def test_delays_alone_are_found_to_a_nanosecond():
-    """Without other errors a delay is limited only by the nanosecond of the time of the motion."""
+    """Without other errors a delay is found to 1 ns, the resolution of the time of the motion."""
     record, chosen = ideal({**THREE_ANGLES, **DELAYS}, 60.0)
     found = estimate_triad([record]).channels
     assert [1e6 * c.delay for c in found] == pytest.approx([5000.0, -300.0, 1.0], abs=1e-3)
 
 
 def test_a_stamp_in_the_middle_of_the_interval_is_a_delay_of_half_of_it():
-    """Stamps 5 ms early make every channel 5 ms early: a common delay is one of the stamps."""
+    """Stamps that are 5 ms early make every channel 5 ms early: the delay is common."""
     chosen = settings(THREE_ANGLES)
     generator = chosen.motion_generator
     motion = make_motion(generator.motion, generator.datum, generator.earth)

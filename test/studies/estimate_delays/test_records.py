@@ -1,6 +1,4 @@
-"""
-The verb and the function with runs, bags and CSV files: one answer, and one message for bad ones.
-"""
+"""The command and the function on runs, bags and CSV files: equal results, one message if bad."""
 
 from dataclasses import replace
 import json
@@ -32,7 +30,7 @@ def made(tmp_path_factory):
 
 def test_a_run_a_bag_and_a_csv_file_have_one_answer(made, tmp_path, capsys):
     """
-    A run, a bag and a CSV file give the same answer.
+    A run, a bag and a CSV file give the same result.
 
     The bag contains the truth as samples, the CSV file relies on the motion of the parameters.
     Readings are the same; the motion of the bag ends 3 s earlier, which changes the used noise.
@@ -71,7 +69,7 @@ def test_a_run_a_bag_and_a_csv_file_have_one_answer(made, tmp_path, capsys):
 
 
 def test_an_ins_log_with_its_reference(made, tmp_path):
-    """The readings are in one CSV file, the attitude in another, on one clock."""
+    """Readings in one CSV file, and the attitude in another, give the result on one clock."""
     reference = tmp_path / 'reference.csv'
     assert main(['convert', str(made / 'bag'), str(reference)]) == 0
     found = ins_sim.estimate_delays(made / 'imu.csv', {
@@ -103,7 +101,7 @@ def test_from_python(made):
 
 
 def test_a_motion_of_the_caller(made):
-    """A run object carries a user-defined motion; its folder does not."""
+    """A run object carries a user's motion; its folder does not."""
     chosen = ins_sim.read_settings('imu_tactical_fog', {**DIAGONAL, **DELAYS, 'duration_s': 20.0})
     run = ins_sim.simulate(chosen, twin=False)
     own = replace(run, own_motion=True)
@@ -116,7 +114,7 @@ def test_a_motion_of_the_caller(made):
 
 
 def refused(words, capsys):
-    """Return the message with which the verb refuses."""
+    """Return the message with which the command refuses."""
     capsys.readouterr()
     assert main(['estimate-delays', *map(str, words)]) == 2
     error = capsys.readouterr().err.strip()
@@ -126,7 +124,7 @@ def refused(words, capsys):
 
 
 def test_bad_input_is_one_sentence(made, tmp_path, capsys):
-    """The message names the fault and the expectation, and nothing is written."""
+    """Invalid input gives a message with fault and expectation, and nothing is written."""
     out = ['-o', tmp_path / 'out']
     csv, run, bag = made / 'imu.csv', made / 'run', made / 'bag'
     cases = [
@@ -172,7 +170,11 @@ def test_records_that_do_not_serve(made, tmp_path, capsys):
 
 
 def test_without_a_source_motions_are_compared(tmp_path, capsys):
-    """Bars, map and speed are written; a motion of the parameters is among those compared."""
+    """
+    Without a source motions are compared; bars, map and speed are written.
+
+    A motion of the parameters is among those compared.
+    """
     out = tmp_path / 'plan'
     assert main(['estimate-delays', *FOG, *MOTION, '-p', 'motion.rocking.frequency_hz:=2.0',
                  '--duration', '100', '-o', str(out)]) == 0
@@ -191,7 +193,7 @@ def test_without_a_source_motions_are_compared(tmp_path, capsys):
 
 @pytest.mark.parametrize('duration', ['0', '-5', 'nan'])
 def test_a_motion_of_no_length_is_refused(duration, tmp_path, capsys):
-    """A motion of zero length is refused; 0 s is not taken for the default."""
+    """A motion of zero duration is refused; 0 s is not replaced by the default."""
     assert main(['estimate-delays', '--duration', duration, '-o', str(tmp_path / 'e')]) == 2
     assert f'--duration is {duration} s; expected more than 0' in capsys.readouterr().err
     assert not (tmp_path / 'e').exists()

@@ -1,4 +1,4 @@
-"""Blocks are returned in order and once each, whatever finishes first or fails on the way."""
+"""Blocks are returned in order and once each, whatever finishes first or fails."""
 
 import os
 import signal
@@ -83,13 +83,13 @@ def test_an_error_of_the_work_is_the_error(jobs):
 
 @pytest.mark.parametrize('jobs, scheduler', [(-1, None), (2, 'tcp://host:8786')])
 def test_what_is_no_executor_is_refused(jobs, scheduler):
-    """Invalid executors are refused in one sentence that names the value."""
+    """An invalid executor is refused with one message that names it."""
     with pytest.raises(ValueError, match=f'^jobs is {jobs}'), open_executor(jobs, scheduler):
         pass
 
 
 def test_finished_blocks_are_not_computed_again(tmp_path):
-    """Finished blocks are not computed again after an interruption; a damaged one is."""
+    """After an interruption finished blocks are not computed again; a damaged one is."""
     folder, identity = tmp_path / 'blocks', {'a': 1, 'b': (1.5, 'x')}
     store = BlockStore(folder, identity)
     with open_executor(2) as executor:

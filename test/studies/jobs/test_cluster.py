@@ -1,4 +1,4 @@
-"""A Dask cluster computes the same blocks; an unusable one is refused in one sentence."""
+"""A Dask cluster computes the same blocks; an unusable one is refused with one message."""
 
 import signal
 import sys
@@ -37,7 +37,7 @@ def test_a_killed_worker_costs_only_time(processes):
 
 
 def test_a_cluster_that_goes_away_is_named(processes):
-    """If the scheduler ends, the study ends with a message."""
+    """If the scheduler ends, the study ends with a message that names it."""
     processes.worker()
     with open_executor(scheduler=processes.address) as executor:
         with pytest.raises(ValueError, match=f'{processes.address} is lost'):
@@ -47,7 +47,7 @@ def test_a_cluster_that_goes_away_is_named(processes):
 
 
 def test_a_cluster_without_workers_is_refused(processes, monkeypatch):
-    """A cluster without workers is refused at once, one that lost its last worker later."""
+    """A cluster without workers is refused at the start, one that lost its last worker later."""
     with pytest.raises(ValueError, match='has no worker; expected one or more'):
         with open_executor(scheduler=processes.address):
             pass

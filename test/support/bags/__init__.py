@@ -1,1 +1,1 @@
-"""Bags for tests: messages of every type, truth, and readers of other packages."""
+"""Bags for tests: messages of every type, bags of a true motion, and readers of other packages."""

@@ -8,18 +8,21 @@ import time
 import pytest
 from .foxglove import FoxgloveClient, GUARD_S
 
-# Some bags have several files: all are of one folder.
+# A bag may consist of several files in one folder.
 MCAP = '*.mcap'
 ERROR, WARNING = 'error', 'warning'
 
 
 def need(module):
-    """Return a module of another program, or skip."""
+    """Return an imported module of another package; skip the test if it is not installed."""
     return pytest.importorskip(module, reason=f'{module} is not installed (PyPI)')
 
 
 def mcap_messages(path):
-    """Yield (schema, channel, message) of a bag, by the reader of mcap, with its checksums."""
+    """
+    Yield (schema, channel, message) of a bag, read by the mcap library with its checksums
+    verified.
+    """
     reader = need('mcap.reader')
     for file in sorted(path.glob(MCAP)):
         with open(file, 'rb') as stream:
@@ -27,7 +30,9 @@ def mcap_messages(path):
 
 
 def mcap_counts(path):
-    """Return {topic: number of messages} as read by mcap, which has to agree with the summary."""
+    """
+    Return {topic: number of messages} as read by mcap; check that the summary holds the same.
+    """
     counts, reader = {}, need('mcap.reader')
     for _, channel, _ in mcap_messages(path):
         counts[channel.topic] = counts.get(channel.topic, 0) + 1
@@ -40,7 +45,7 @@ def mcap_counts(path):
 
 
 def evo_trajectories(path, names):
-    """Return {topic: PoseTrajectory3D} as evo reads a bag, checked by it."""
+    """Return {topic: PoseTrajectory3D} of a bag read by evo, checked by evo itself."""
     file_interface = need('evo.tools.file_interface')
     from rosbags.rosbag2 import Reader
     with Reader(path) as reader:
@@ -52,7 +57,9 @@ def evo_trajectories(path, names):
 
 
 def evo_position_rms(reference, estimate):
-    """Return the rms of the absolute position error of a trajectory by evo, m, unaligned."""
+    """
+    Return the rms of the absolute position error of a trajectory computed by evo, m, unaligned.
+    """
     metrics, sync = need('evo.core.metrics'), need('evo.core.sync')
     ape = metrics.APE(metrics.PoseRelation.translation_part)
     ape.process_data(sync.associate_trajectories(reference, estimate))
@@ -60,7 +67,9 @@ def evo_position_rms(reference, estimate):
 
 
 def served_by_foxglove(path):
-    """Serve a bag by foxglove-sdk, and return the topics whose bytes a client gets unchanged."""
+    """
+    Serve a bag with foxglove-sdk; return the topics that a client receives with unchanged bytes.
+    """
     foxglove = need('foxglove')
     first, context = {}, foxglove.Context()
     channels = {}
@@ -76,7 +85,7 @@ def served_by_foxglove(path):
         with FoxgloveClient(server.port) as client:
             client.wait_channels(channels)
             client.subscribe(channels)
-            # A message sent before the subscription has arrived is lost.
+            # A message that is sent before the client has subscribed is lost.
             end = time.monotonic() + GUARD_S
             while not all(channel.has_sinks() for channel in channels.values()):
                 assert time.monotonic() < end, 'subscriptions do not arrive'
@@ -91,7 +100,7 @@ def served_by_foxglove(path):
 
 
 def _run(module, *words, codes=(0,)):
-    """Run a module of this interpreter and return what it prints."""
+    """Run a module with this interpreter; return its output."""
     found = subprocess.run([sys.executable, '-c', f'import sys; from {module} import main; '
                             'sys.exit(main())', *map(str, words)], capture_output=True, text=True,
                            check=False)
@@ -100,7 +109,7 @@ def _run(module, *words, codes=(0,)):
 
 
 def stamplint_findings(path):
-    """Return the findings of stamplint that are more than information."""
+    """Return the findings of stamplint above the level of information."""
     need('stamplint')
     found = json.loads(_run('stamplint.cli', path, '--json', codes=(0, 1)))
     return [one['message'] for one in found if one['severity'] in (ERROR, WARNING)]
@@ -114,9 +123,9 @@ def doctor_findings(path):
 
 
 def slam_lint_findings(path):
-    """Return the findings of rosbag-slam-lint for a bag that an EKF is to read."""
+    """Return the findings of rosbag-slam-lint for a bag that is input of an EKF."""
     need('rosbag_slam_lint')
-    # It reports bags shorter than 60 s, which those of tests are.
+    # The linter reports bags shorter than 60 s, and the bags of tests are shorter.
     rules = path.with_name('slam_lint.yaml')
     rules.write_text('checks: {short_recording_s: 5.0}')
     found = json.loads(_run('rosbag_slam_lint', path, '--profile', 'ekf', '--json', '--config',

@@ -1,4 +1,4 @@
-"""A minimal client of the WebSocket protocol of Foxglove."""
+"""A minimal client of Foxglove's WebSocket protocol."""
 
 import base64
 import json
@@ -15,10 +15,10 @@ _MESSAGE = struct.Struct('<BIQ')
 
 class FoxgloveClient:
     """
-    Connected to a server on this machine; use as a context manager.
+    Client connected to a server on this machine; use it as a context manager.
 
-    channels: {topic: description} as advertised so far; received: {topic: (log time ns, bytes)},
-    the last message of each.
+    channels: {topic: description} as advertised so far; received: {topic: (log time ns, bytes)} of
+    the last message of each topic.
     """
 
     def __init__(self, port):
@@ -42,7 +42,7 @@ class FoxgloveClient:
         self._socket.close()
 
     def _send(self, opcode, data):
-        # A client masks what it sends; a mask of zeros leaves it as it is.
+        # A client must mask the data it sends; a mask of zeros leaves them unchanged.
         length = bytes([0x80 | len(data)]) if len(data) < 126 else (
             bytes([0x80 | 126]) + struct.pack('>H', len(data)))
         self._socket.sendall(bytes([0x80 | opcode]) + length + bytes(4) + data)
@@ -70,7 +70,7 @@ class FoxgloveClient:
             self.received[self._topics[number]] = log_ns, data[_MESSAGE.size:]
 
     def wait_channels(self, names):
-        """Take what comes until all these topics are advertised."""
+        """Receive frames until all these topics are advertised."""
         while not set(names) <= set(self.channels):
             self._step()
 
@@ -82,6 +82,6 @@ class FoxgloveClient:
                 {'id': number, 'channelId': self.channels[name]['id']}]}).encode())
 
     def wait_messages(self, names):
-        """Take what comes until there is a message of each topic."""
+        """Receive frames until every topic has a message."""
         while not set(names) <= set(self.received):
             self._step()

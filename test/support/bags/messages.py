@@ -30,7 +30,7 @@ def topic_of(type_name):
 
 
 def strings():
-    """Return messages of the types that have no layout, as the nodes publish them."""
+    """Return messages of the types without a layout, as the nodes publish them."""
     text = STORE.types[topics.STRING]
     time, header = STORE.types['builtin_interfaces/msg/Time'], STORE.types[topics.HEADER]
     pair = STORE.types['diagnostic_msgs/msg/KeyValue']
@@ -44,7 +44,11 @@ def strings():
 
 
 def write_everything(path, storage, compression, **options):
-    """Write N messages of every layout in blocks and a few others; return {topic: bytes}."""
+    """
+    Write N messages of every layout in blocks and a few messages of other types.
+
+    Return {topic: bytes} of all messages written.
+    """
     expected = {}
     with BagWriter(path, storage, compression, **options) as bag:
         for type_name in TYPES:

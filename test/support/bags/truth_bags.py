@@ -1,4 +1,4 @@
-"""Bags that hold the truth of a motion."""
+"""Bags that hold the true motion."""
 
 from dataclasses import replace
 
@@ -14,7 +14,11 @@ SECOND = 1_000_000_000
 
 
 def record(path, values, length_s, rate_hz=100.0, only=topics.TRUTH, prefix='', change=None):
-    """Write the truth of a closed form from motion time 0 on; change: of {Topic: [t_ns, x]}."""
+    """
+    Write the truth of a closed-form motion from motion time 0 on.
+
+    change: function of {Topic: [t_ns, x]} that alters the data before they are written.
+    """
     chosen = settings(values)
     generator = chosen.motion_generator
     motion = read_motion(generator)
@@ -30,6 +34,6 @@ def record(path, values, length_s, rate_hz=100.0, only=topics.TRUTH, prefix='', 
 
 
 def recorded(path, values, **more):
-    """Return Settings whose motion is the bag."""
+    """Return Settings whose motion is read from the bag."""
     return settings({**values, 'motion.kind': 'recording', 'motion.recording.path': str(path),
                      **more})

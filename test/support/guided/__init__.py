@@ -1,1 +1,1 @@
-"""Guided flights for tests, and their lateral channel alone."""
+"""Guided flights for tests, and their lateral channel simulated alone."""

@@ -1,4 +1,4 @@
-"""The lateral loop of the velocity meter's study, and its reduced flights."""
+"""The lateral guidance loop of the study of the velocity meter, and its reduced simulations."""
 
 import math
 
@@ -18,21 +18,21 @@ def loop(latency=0, ramps=True):
 
 
 def sliding(cycles, k_v, step=1):
-    """Return the conventional Aiding whose windows slide, K_v in 1/s."""
+    """Return the conventional Aiding with sliding windows, gain K_v in 1/s."""
     return Aiding('conventional', cycles, step, k_v * step * PERIOD_S)
 
 
 def block(cycles, gain):
-    """Return the conventional Aiding of windows that follow one another."""
+    """Return the conventional Aiding with successive windows that do not overlap."""
     return Aiding('conventional', cycles, cycles, gain)
 
 
 def paper(cycles, gain):
-    """Return the paper's corrected Aiding."""
+    """Return the corrected Aiding of Ivanov (2015)."""
     return Aiding('paper_corrected', cycles, cycles, gain)
 
 
 def flown(aiding, k_z, offset=100.0, duration_s=300.0, engaged_s=0.0, latency=0):
-    """Return the ReducedFlights, the lateral channel alone, of one case."""
+    """Return the ReducedFlights of one case: simulations of the lateral channel alone."""
     cases = ReducedCases(np.array([aiding.gain]), np.array([k_z]), np.array([offset]))
     return fly_reduced(loop(latency), aiding, cases, duration_s, MOST, engaged_s, forward=False)

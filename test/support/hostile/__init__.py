@@ -1,1 +1,1 @@
-"""What tests and tools/fuzz_nodes.py share: nodes fed by hand, and messages that nobody sends."""
+"""Shared by tests and tools/fuzz_nodes.py: nodes fed without DDS, and hostile messages."""

@@ -1,4 +1,4 @@
-"""Bags to be damaged, and the sentence that is expected of them."""
+"""Bags to be damaged by tests, and a check of the error message for a damaged bag."""
 
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter
@@ -27,7 +27,7 @@ def write(path, storage='mcap', compression='none', **options):
 
 
 def refused(path, sentence, capsys, read=False):
-    """Check that a bag is refused by info (or when it is read) with a sentence, exit code 2."""
+    """Check that info, or reading, refuses a bag with this message and exit code 2."""
     if not read:
         assert main(['info', str(path)]) == 2
         said = capsys.readouterr().err

@@ -1,8 +1,8 @@
 """
-Real node objects whose DDS is a bus in this process, fed with bytes through the doors of DDS.
+Real node objects joined by a message bus in this process, which replaces DDS at its interfaces.
 
-Nothing waits: the clock is told how late it is.  What the nodes publish goes to those that read
-it, and is looked at.
+No test waits: the tests advance the clock. Messages published by the nodes are checked, and
+delivered to the nodes that read them.
 """
 
 from collections import defaultdict, deque
@@ -18,7 +18,7 @@ from unittest import mock
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.cdr import LAYOUTS, Reader, stamp_of
 
-# Stands for tf2_msgs, which the ROS of PyPI has not: on the bus there are only bytes.
+# Replaces tf2_msgs, which the ROS packages of PyPI lack; the bus carries only bytes.
 STAND_IN = 'std_msgs/msg/Header'
 TOPICS = {topic.name: topic for topic in (
     *topics.DATA, *topics.BESIDE, *topics.AIDING, *topics.GUIDANCE, topics.ACK,
@@ -26,7 +26,7 @@ TOPICS = {topic.name: topic for topic in (
 
 
 class ToldClock:
-    """Stands for the module ``time``: its time passes when it is told so, and in naps."""
+    """Replaces the module ``time``: time passes by ``pass_by`` and ``sleep`` only."""
 
     def __init__(self):
         self.now_s, self.timers = 1e6, []
@@ -40,18 +40,18 @@ class ToldClock:
         return round(1e9 * self.now_s)
 
     def sleep(self, nap_s):
-        """Let a nap pass."""
+        """Advance the time by a sleep."""
         self.now_s += nap_s
 
     def pass_by(self, step_s):
-        """Let time pass, and call the timers that are due."""
+        """Advance the time and call the timers that are due."""
         self.now_s += step_s
         for timer in self.timers:
             timer.call_if_due()
 
 
 class ToldTimer:
-    """Stands for a wall timer."""
+    """Replaces a wall timer."""
 
     def __init__(self, clock, period_s, callback):
         self._clock, self._period_s, self._callback = clock, period_s, callback
@@ -59,15 +59,15 @@ class ToldTimer:
         clock.timers.append(self)
 
     def reset(self):
-        """Begin a period now."""
+        """Start a new period at the present time."""
         self._due_s = self._clock.now_s + self._period_s
 
     def cancel(self):
-        """Never be due, until the next reset."""
+        """Disable the timer until the next reset."""
         self._due_s = math.inf
 
     def call_if_due(self):
-        """Call the callback."""
+        """Call the callback if the period has elapsed."""
         if self._clock.now_s >= self._due_s:
             self.reset()
             self._callback()
@@ -75,10 +75,11 @@ class ToldTimer:
 
 class Bus:
     """
-    Delivers bytes from publishers to queues, and looks at what nodes publish.
+    Delivers bytes from publishers to queues, and checks the messages that nodes publish.
 
-    ``sent`` counts messages by topic, ``newest_ns`` has the last stamp of each; ``wrong`` collects
-    what is not finite.  ``listen(name, data)`` is told of every message that a node publishes.
+    ``sent`` counts messages by topic, ``newest_ns`` has the last stamp of each topic, ``wrong``
+    collects messages with values that are not finite. ``listen(name, data)`` is called with every
+    message that a node publishes.
     """
 
     def __init__(self, clock):
@@ -88,13 +89,15 @@ class Bus:
         self._driven = []
 
     def make_publisher(self, node, topic, depth):
-        """Return what stands for a publisher of a Topic."""
+        """Return a replacement for the publisher of a Topic."""
         return SimpleNamespace(publish=lambda data: self._publish(topic.name, data),
                                get_subscription_count=lambda: 1,
                                wait_for_all_acked=lambda _: True, topic_name=topic.name)
 
     def join(self, queue, name, is_driving):
-        """Let what comes on a topic go into a queue of a node instead of what DDS has."""
+        """
+        Feed a queue of a node with the messages of a topic, in place of those received by DDS.
+        """
         waiting = deque()
         queue._take = lambda cls, raw: waiting.popleft() if waiting else None
         self._queues[name].append(waiting)
@@ -112,7 +115,7 @@ class Bus:
         self.put(name, data)
 
     def put(self, name, data):
-        """Deliver a message, whoever sends it."""
+        """Deliver a message, from a node or from a test."""
         self._numbers[name] += 1
         info = {'publication_sequence_number': self._numbers[name],
                 'received_timestamp': self.clock.time_ns()}
@@ -120,7 +123,7 @@ class Bus:
             waiting.append((data, info))
 
     def drive(self):
-        """Wake the nodes until nothing that drives one waits."""
+        """Wake the nodes until no message that triggers a computation is waiting."""
         busy = True
         while busy:
             busy = False
@@ -131,7 +134,7 @@ class Bus:
 
 
 def not_finite(name, data):
-    """Return what a published message holds that is no number, or ''."""
+    """Return the values of a published message that are not finite, as text, or ''."""
     topic = TOPICS.get(name)
     if topic is None:
         return ''
@@ -144,27 +147,27 @@ def not_finite(name, data):
         if math.isfinite(sum(values)):
             return ''
         if topic.type_name == topics.FIX and Reader(topics.FIX).numbers(data)[0] < 0:
-            # a receiver without a fix says so, with a place that is not a number
+            # By convention a receiver without a fix publishes a position of NaN.
             values = values[3:]
     return '' if all(map(math.isfinite, values)) else str(values)
 
 
 @lru_cache(maxsize=None)
 def _doubles(type_name):
-    """Return what unpacks the doubles of a message, and the size of what they begin."""
+    """Return a function that unpacks the doubles of a message, and their offset from its end."""
     layout = LAYOUTS[type_name]
     found = struct.Struct(f'<{layout.doubles}d')
     return found.unpack_from, found.size + layout.fix
 
 
 class Log:
-    """Stands for the logger of a node: counts lines, and keeps the last ones."""
+    """Replaces the logger of a node: counts lines and keeps the last ones."""
 
     def __init__(self):
         self.lines, self.longest, self.kept = 0, 0, deque(maxlen=200)
 
     def say(self, sentence, **more):
-        """Take a line."""
+        """Record a line."""
         self.lines += 1
         self.longest = max(self.longest, len(sentence))
         assert sentence.isprintable(), sentence
@@ -177,7 +180,7 @@ class FedNodes:
     """
     Nodes of the table of executables, joined by a Bus; a context manager.
 
-    parameters: {node: {name: value}}.  ``nodes`` has them by name, ``logs`` what they say.
+    parameters: {node: {name: value}}. ``nodes`` and ``logs`` hold the node and its Log by name.
     """
 
     def __init__(self, parameters):
@@ -190,7 +193,7 @@ class FedNodes:
     def __enter__(self):
         with ExitStack() as stack:
             self._start(stack)
-            # from here on __exit__ undoes it; where starting fails it is undone at once
+            # From here on __exit__ cleans up; if starting fails, the stack does it immediately.
             self._ends = stack.pop_all()
         return self
 
@@ -208,7 +211,7 @@ class FedNodes:
         def patch(owner, name, value):
             stack.enter_context(mock.patch.object(owner, name, value))
 
-        # as in a node process
+        # As in node processes: plain Python, because a live node must not stop to compile.
         stack.enter_context(plain_only())
         self._context = rclpy.Context()
         self._context.init()
@@ -251,7 +254,10 @@ class FedNodes:
 
 
 def held_bytes(thing, seen=None):
-    """Return how many bytes an object holds, with all it leads to that is ours or plain."""
+    """
+    Return the size of an object in bytes, including all containers and objects of ins_sim it
+    holds.
+    """
     seen = set() if seen is None else seen
     total, todo = 0, [thing]
     while todo:

@@ -1,11 +1,11 @@
 """
-Sound files of every format that is read, and seeded mutations of them.
+Valid files of every format that is read, and seeded mutations of them.
 
-What is tried: bytes flipped, cut, put in and repeated; lines and fields lost, doubled and
-exchanged; numbers replaced by nan, inf, 1e300, 400 digits and nothing; headers changed; messages
-changed before they are put into a bag, where no checksum finds it; arrays of other types.
-``Hostile.attempt`` reads a mutation as the commands do: the outcome is a result without anything
-that is not finite, or one sentence.
+Mutations: bytes flipped, removed, inserted and repeated; lines and fields lost, doubled and
+exchanged; numbers replaced by nan, inf, 1e300, 400 digits or an empty field; headers changed;
+messages changed before they are written into a bag, where no checksum detects it; arrays of other
+types. ``Hostile.attempt`` reads a mutation as the commands do: it must give a result with finite
+values only, or one error message.
 """
 
 import gzip
@@ -49,7 +49,7 @@ AT_REST = {**START, 'accept.frames': True, 'accept.unmeasured': True, 'accept.or
 
 
 def _at_rest(count=400, rate_hz=50):
-    """Return t_s, rate and force of an IMU at rest with noise, (n,), (n, 3), (n, 3)."""
+    """Return t_s, rate and force of an IMU at rest with noise: (n,), (n, 3), (n, 3)."""
     noise = np.random.default_rng(3).standard_normal((count, 6))
     return (np.arange(count) / rate_hz, 1e-3 * noise[:, :3],
             [0.0, 0.0, 9.8] + 2e-2 * noise[:, 3:])
@@ -60,7 +60,7 @@ def _table(names, rows):
 
 
 def _transform():
-    """Return a TFMessage with one rotation, CDR."""
+    """Return a TFMessage with one rotation as CDR bytes."""
     body = struct.pack('<IiI', 1, 0, 0)
     for name in (b'base_link\0', b'imu_link\0'):
         body += bytes(-len(body) % 4) + struct.pack('<I', len(name)) + name
@@ -69,7 +69,9 @@ def _transform():
 
 
 class Hostile:
-    """Mutations of files of all kinds; folder: where they are written; counts: by outcome."""
+    """
+    Mutations of files of all kinds; folder: where they are written; counts: number by outcome.
+    """
 
     def __init__(self, folder):
         self._folder = Path(folder)
@@ -133,7 +135,7 @@ class Hostile:
         return velocity_record.pack_fix(fix, 10 ** 9)
 
     def mutation(self, seed):
-        """Return the kind of a mutation and its bytes, or its messages for a bag."""
+        """Return the kind of a mutation and its bytes, or its messages if it is a bag."""
         rng = random.Random(seed)
         kind = KINDS[seed % len(KINDS)]
         if kind == 'messages':
@@ -152,14 +154,14 @@ class Hostile:
 
     @staticmethod
     def _changed(rng, message):
-        """Return a message, one in twenty changed, for a bag of messages."""
+        """Return a message for a bag; one in twenty is changed."""
         name, type_name, log_ns, data = message
         if rng.random() > 0.05:
             return message
         data = bytearray(data)
         how = rng.random()
         if how < 0.5 and len(data) > 20:
-            # doubles lie at multiples of eight behind the encapsulation
+            # Doubles lie at multiples of eight bytes behind the encapsulation header.
             place = 4 + 8 * rng.randrange(1, max(2, (len(data) - 4) // 8))
             if place + 8 <= len(data):
                 struct.pack_into('<d', data, place, rng.choice(_DOUBLES))
@@ -188,7 +190,10 @@ class Hostile:
         return buffer.getvalue()
 
     def attempt(self, seed):
-        """Read a mutation; return its kind, and 'result' or 'sentence'; else AssertionError."""
+        """
+        Read a mutation; return its kind and 'result' or 'sentence'; other outcomes raise
+        AssertionError.
+        """
         kind, data = self.mutation(seed)
         path = self._folder / f'try.{kind.partition(".")[2] or "bin"}'
         if kind == 'messages':
@@ -217,7 +222,7 @@ class Hostile:
         return folder
 
     def _read(self, kind, path, data, seed):
-        """Read a file of a kind as the commands do, and check what comes out."""
+        """Read a file of a kind as the commands do, and check the result."""
         if kind == 'flight.csv':
             motion = RecordedMotion(read_poses(path), Recording(path=str(path)), Earth())
             _finite(motion.at([0, 10 ** 9]).arrays())

@@ -1,8 +1,8 @@
 """
-A flight of all nodes amid hostile messages: what must hold whatever comes, and what came.
+A flight of all nodes while hostile messages arrive, and the conditions that must always hold.
 
-The truth is sent by the flight itself, or where the motion is guided by the generator, steered by
-the aided solution.
+The truth is sent by this class, or, if the motion is guided, by the motion generator, which is
+steered by the aided solution.
 """
 
 from collections import Counter
@@ -33,7 +33,7 @@ NODES = {
     'aided_navigator': {**COMMON, 'window.cycles': 50, 'gnss_model.use': True},
 }
 _INTEGRATED = {'input': 'integrated'}
-# Other settings of the nodes: what is theirs alone.
+# Settings of a variant that differ from the common ones, by node.
 VARIANTS = (
     {},
     {'imu_sensor': {'source': 'motion', 'motion.kind': 'racetrack', 'gyro.delay_us.x': 1000.0}},
@@ -53,32 +53,32 @@ VARIANTS = (
       for name in ('free', 'conventional', 'paper', 'paper_corrected', 'window_kf')),
     {'motion_generator': {'motion.kind': 'guided', 'pacing.lock_step': False, 'duration_s': 0.0}},
 )
-# which of them has stamps that the aided navigator finds no truth for, and which is steered
+# Variant with stamps for which the aided navigator finds no truth, and variant with guidance.
 JITTERED, STEERED = 4, len(VARIANTS) - 1
 ATTACKED = (topics.TRUTH_IMU, topics.TRUTH_ODOMETRY, topics.IMU_RAW, topics.INS_ODOMETRY,
             topics.METER_RECORD, topics.GNSS_FIX, topics.GNSS_VELOCITY, topics.ACK)
-# What every node must have said of the last seconds of a calm stretch: topic, and how late, s.
+# Topics that must be recent at the end of a calm stretch, each with its greatest age, s.
 ALIVE = ((topics.IMU_RAW, 0.05), (topics.INS_ODOMETRY, 0.05), (topics.AIDED_ODOMETRY, 0.3),
          (topics.METER_RECORD, 1.1), (topics.METER_VELOCITY, 1.1), (topics.GNSS_FIX, 1.1))
-# Good samples after which all nodes are back: the 5 s of patience, twice, and some windows.
+# Good samples after which all nodes work again: twice the patience of 5 s, and some windows.
 CALM = 1500
-# What one message may lead to, all nodes together.
+# Limits on what one message may cause, over all nodes: messages sent, and bytes held.
 MOST_SENT = 20_000
 MOST_BYTES = 20_000_000
-# Of a second of all nodes, and at once when a kind of fault is new.
+# Limits on log lines of a node: per second, in addition at the first occurrence of faults, length.
 LINES_PER_SECOND, LINES_AT_ONCE, LONGEST_LINE = 4, 60, 700
 
 
 class Finding(AssertionError):
-    """What must not be: one sentence."""
+    """A condition that does not hold; the text states which."""
 
 
 class HostileFlight:
     """
-    All nodes in flight; ``attack(count)`` sends hostile messages, ``calm()`` none.
+    All nodes in flight; ``attack(count)`` sends hostile messages, ``calm()`` only good ones.
 
-    variant: which of VARIANTS; more: {node: parameters} of further ones.  tried: how many by kind
-    and topic; rescued: what the last net has caught, by sentence.
+    variant: index into VARIANTS; more: {node: parameters} of further nodes. tried: number of
+    messages by kind and topic; rescued: unexpected exceptions caught by the nodes, by message.
     """
 
     def __init__(self, seed, more=None, variant=0):
@@ -96,7 +96,7 @@ class HostileFlight:
         self._source = TruthSource(build(MotionGeneratorSettings, FLIGHT))
         self.most_sent = self.most_bytes = 0
 
-    # What the nodes know of the run, or None.
+    # Announcement of the run that the nodes receive at the start, or None.
     announced = RunAnnouncement(0, 0, RATE_HZ, LATEST_NS)
 
     def __enter__(self):
@@ -126,7 +126,7 @@ class HostileFlight:
             self.hostile.heard(name, data)
 
     def announce(self, run, *names):
-        """Deliver the announcement of a run to the nodes that follow one, or to some."""
+        """Deliver the announcement of a run to all nodes that read it, or to the named ones."""
         for name in names or self.fed.nodes:
             if hasattr(self.fed.nodes[name], '_announced'):
                 self.fed.nodes[name]._announced.take(run.pack())
@@ -148,9 +148,9 @@ class HostileFlight:
             self._drive()
 
     def _generate(self):
-        """Let the generator send the next sample: it is due."""
+        """Let the generator send the next sample, which is due."""
         generator = self.fed.nodes['motion_generator']
-        # half a period late, whatever the clock rounds
+        # Half a period late, so that rounding of the clock does not matter.
         generator._pace.anchor(self._k + 0.5)
         generator._advance(None)
         self._k += 1
@@ -158,7 +158,7 @@ class HostileFlight:
             raise Finding(f'the generator has sent {generator._next} samples; expected {self._k}')
 
     def start_anew(self):
-        """Let the generator start anew."""
+        """Reset the run: the next good sample is the first one."""
         self._k = 0
         if self._steered:
             self.fed.nodes['motion_generator']._on_reset(None, SimpleNamespace())
@@ -177,7 +177,7 @@ class HostileFlight:
             raise Finding(f'one message leads to {sent} of the nodes; expected {MOST_SENT}')
 
     def attack(self, count):
-        """Send hostile messages, in bursts amid good samples."""
+        """Send hostile messages in bursts between good samples, and check all conditions."""
         choose = self.hostile.random
         left = count
         while left > 0:
@@ -215,13 +215,13 @@ class HostileFlight:
                               f'characters; expected {most:.0f} of {LONGEST_LINE}')
 
     def calm(self, samples=CALM):
-        """Send good samples alone; every node must be back at the end of them."""
+        """Send only good samples; at their end every node must deliver recent output."""
         self.good(samples)
         self._check()
         now_ns = self._source.stamp_ns(self._k - 1)
         for topic, late_s in self._alive:
             late_ns = now_ns - self.fed.bus.newest_ns.get(topic.name, -1)
-            # latency and jitter may put a stamp before now
+            # Latency and jitter may give stamps slightly later than the present sample.
             if not -SECOND // 100 <= late_ns <= round(late_s * SECOND):
                 raise Finding(f'{topic.name} is {late_ns / SECOND:.3f} s late after {samples} '
                               f'good samples; expected {late_s:g} s')

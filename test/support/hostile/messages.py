@@ -1,7 +1,7 @@
 """
-Messages that nobody should send: good ones spoilt in every way, by kind, from one seed.
+Hostile messages: good messages changed in every way, by kind, from one seed.
 
-They are bytes, as they come from DDS.  Used by test/ros/test_hostile_nodes.py and by
+They are bytes as received from DDS, used by test/ros/test_hostile_nodes.py and
 tools/fuzz_nodes.py.
 """
 
@@ -21,22 +21,22 @@ INSTANTS = ('9' * 400, '-' + '9' * 400, '1e300', 'nan', '', '0', '-1', str(2**63
             str(2**31 * SECOND))
 TEXTS = ('\x1b[31mred\x1b[0m', '\x1b]0;title\x07', 'a\nb\r\tc', '\u202ereversed', 'x' * 10_000,
          '%s %n {0}', "it's", '', '\ud800'.encode('utf-8', 'surrogatepass').decode('latin-1'))
-# how far stamps are moved, ns
+# Shifts of stamps, ns.
 SHIFTS = (1, -1, 10**6, -10**6, 5 * 10**6, 10**7, -10**7, 3 * 10**7, -5 * 10**7, SECOND, -SECOND,
           60 * SECOND, -60 * SECOND, 3600 * SECOND, 10**6 * SECOND, 1_020_000 * SECOND)
 
 
 def with_stamp(data, sec, nanosec):
-    """Return a message with another stamp, whatever it may hold."""
+    """Return a message with another stamp, whether valid or not."""
     return data[:4] + struct.pack('<iI', sec, nanosec) + data[12:]
 
 
 class HostileMessages:
     """
-    Spoils good messages of some Topics.
+    Creates hostile messages from good messages of some Topics.
 
-    seed: all that follows from it is the same; wanted: Topics.  ``heard(name, data)`` is told of
-    every good message; ``message()`` returns a kind, the name of a topic and bytes.
+    seed: determines all messages; wanted: Topics. ``heard(name, data)`` must be called with every
+    good message; ``message()`` returns a kind, the name of a topic and bytes.
     """
 
     def __init__(self, seed, wanted):
@@ -50,7 +50,7 @@ class HostileMessages:
                       'publisher': self._publisher}
 
     def heard(self, name, data):
-        """Remember a good message."""
+        """Store a good message."""
         self._good[name].append(bytes(data))
 
     def last(self, name):
@@ -58,7 +58,9 @@ class HostileMessages:
         return self._good[name][-1]
 
     def message(self):
-        """Return one: its kind, topic name and bytes; None until something good was heard."""
+        """
+        Return kind, topic name and bytes of a hostile message; None before the first good message.
+        """
         name = self._random.choice(list(self._topics))
         good = self._good[name]
         if not good:
@@ -67,7 +69,7 @@ class HostileMessages:
         return kind, name, self.kinds[kind](self._topics[name], good)
 
     def _doubles(self, topic, data):
-        """Return the offset of the doubles and how many there are."""
+        """Return the offset of the doubles of a message and their number."""
         count = LAYOUTS[topic.type_name].doubles if topic.type_name in LAYOUTS else 0
         end = len(data) - LAYOUTS[topic.type_name].fix if count else len(data)
         return end - 8 * count, count
@@ -95,7 +97,7 @@ class HostileMessages:
             struct.pack_into('<d', spoilt, offset + 8 * self._random.randrange(count),
                              self._number())
         if self._random.random() < 0.5:
-            # as of now, so that it is not refused for its stamp alone
+            # With a present stamp, so that the message is not rejected for its stamp alone.
             return self._moved(bytes(spoilt), self._random.choice((10**7, 2 * 10**7)))
         return bytes(spoilt)
 
@@ -162,13 +164,13 @@ class HostileMessages:
         if how == 3:
             return data + bytes(choose.randrange(256) for _ in range(choose.randrange(1, 40)))
         if how == 4:
-            # big-endian, XCDR2, parameter lists, and what is no encapsulation
+            # Big-endian, XCDR2, parameter lists, and invalid encapsulations.
             return bytes((choose.choice((0, 1, 7, 255)), choose.choice((0, 2, 3, 6, 7, 9, 255)))
                          ) + data[2:]
         if how == 5:
             return bytes(choose.randrange(256) for _ in range(choose.randrange(300)))
         if how == 6:
-            # the length of the first string
+            # The length of the first string of the message.
             return data[:12] + struct.pack('<I', choose.choice(
                 (0, 2**32 - 1, 2**31, len(data), choose.randrange(2**32)))) + data[16:]
         spoilt = bytearray(data)
@@ -183,6 +185,8 @@ class HostileMessages:
         return good[-1]
 
     def _publisher(self, topic, good):
-        """Another run of the same: between the samples, or at another time."""
+        """
+        Return a message as from a second publisher: between two samples, or from another time.
+        """
         return self._moved(good[self._random.randrange(-min(5, len(good)), 0)],
                            self._random.choice((5 * 10**6, 2 * 10**6, 100 * SECOND, -2 * SECOND)))

@@ -1,4 +1,4 @@
-"""Mutations of bytes and of texts: functions of a random.Random and the bytes."""
+"""Mutations of bytes and of texts: each function receives a random.Random and the data."""
 
 import re
 
@@ -10,7 +10,7 @@ _VALUES = [b'nan', b'inf', b'-inf', b'1e300', b'-1e300', b'1e-320', b'9' * 400, 
 
 
 def flip_bytes(rng, data):
-    """Return the bytes, a few of them others."""
+    """Return the bytes with a few of them replaced."""
     data = bytearray(data)
     for _ in range(rng.choice((1, 1, 2, 8))):
         if data:

@@ -41,10 +41,11 @@ MANIFEST = """\
 
 def build_interfaces(folder, package, definitions, depends):
     """
-    Build a package; return {variable: value} of the environment in which it is imported.
+    Build a package; return {variable: value} of the environment that makes it importable.
 
-    definitions: {'msg/Name.msg': text}; depends: the package whose types they hold.  Skips, and
-    says what is missing, where there is no compiler or no generator of interfaces.
+    definitions: {'msg/Name.msg': text}; depends: the package that defines the types of its fields.
+    The test is skipped, with the missing program named, if no compiler or generator of interfaces
+    is installed.
     """
     missing = [tool for tool in NEEDED if shutil.which(tool) is None]
     if missing:

@@ -1,4 +1,4 @@
-"""A Dask cluster of processes of this machine, and work for it."""
+"""A Dask cluster of processes on this machine, and a task for it."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ import time
 import numpy as np
 from ..places import ROOT
 
-# where a worker finds the functions of this package
+# Workers import the functions of this package from here.
 HERE = os.pathsep.join(map(str, (ROOT, ROOT / 'test')))
 SCHEDULER = ('import asyncio, sys; from distributed import Scheduler\n'
              'async def main():\n'
@@ -23,14 +23,14 @@ WORKER = ('import asyncio, sys; from distributed import Worker\n'
 
 
 class Processes:
-    """A scheduler and workers, each a process of its own."""
+    """A scheduler and workers, each in a process of its own."""
 
     def __init__(self):
         self.all = []
         self.address = self.start(SCHEDULER).stdout.readline().strip()
 
     def start(self, program, *words, path=HERE):
-        """Start a program that finds modules in a path; return its Popen."""
+        """Start a program with a path from which it imports modules; return its Popen."""
         process = subprocess.Popen([sys.executable, '-c', program, *words], text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd='/',
                                    env={**os.environ, 'PYTHONPATH': str(path)})
@@ -38,7 +38,7 @@ class Processes:
         return process
 
     def worker(self, path=HERE):
-        """Start a worker; return it once the scheduler knows it."""
+        """Start a worker; return it when it is registered with the scheduler."""
         import distributed
         with distributed.Client(self.address, set_as_default=False) as client:
             before = len(client.nthreads())
@@ -48,6 +48,6 @@ class Processes:
 
 
 def slow_block(block):
-    """Return a block and its worker, after a while."""
+    """Return a block and the process of its worker, after a pause."""
     time.sleep(0.2)
     return {'block': np.array(block), 'worker': np.array(os.getpid())}

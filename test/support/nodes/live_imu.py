@@ -1,4 +1,4 @@
-"""Feed a recorded IMU to the stage or the node that navigates without truth."""
+"""Feed a recorded IMU to the stage, or to the node, that navigates without truth."""
 
 from dataclasses import dataclass, field
 
@@ -19,28 +19,28 @@ from ins_sim.settings.catalogue import build
 from ins_sim.settings.strapdown import StrapdownSettings
 
 LIVE = {'initial.source': 'alignment', 'input': 'instant', 'vertical.channel': 'free'}
-# As navigate has the same settings under other names, or none of them.
+# The same for navigate, whose settings have other names or no counterpart.
 OFFLINE = {'reference.odometry': 'none', 'reference.velocity': 'none'}
 FIELDS = ('lat', 'lon', 'height', 'v_n', 'q_nb')
 
 
 @dataclass
 class Said:
-    """Solutions and sentences of a stage."""
+    """A stage, with the solutions and messages it has produced."""
 
     stage: StandaloneNavigator
     solved: list = field(default_factory=list)
     sentences: list = field(default_factory=list)
 
     def take(self, outputs):
-        """Take solutions, and what is said with them."""
+        """Store solutions and the messages that came with them."""
         self.solved += outputs
         for said in (self.stage.infos, self.stage.warnings, self.stage.faults):
             self.sentences += said
             said.clear()
 
     def has(self, part):
-        """Return whether a sentence has this part."""
+        """Return whether a message contains this text."""
         return any(part in sentence for sentence in self.sentences)
 
     @property
@@ -50,7 +50,7 @@ class Said:
 
 
 def stage_of(values=None, transforms=False, declination=lambda t_ns, place: (0.0, 'as given')):
-    """Return Said of a new stage of parameters beside LIVE."""
+    """Return Said of a new stage; values: parameters in addition to LIVE."""
     settings = build(StrapdownSettings, {**LIVE, **(values or {})})
     return Said(StandaloneNavigator(settings, LiveMounting(settings.mounting, 'base_link',
                                                            transforms), declination))
@@ -58,9 +58,9 @@ def stage_of(values=None, transforms=False, declination=lambda t_ns, place: (0.0
 
 def play(said, imu, fixes=(), late_ns=0):
     """
-    Give a RecordedImu and PlaceFixes to a stage in the order of their stamps; return Said.
+    Pass a RecordedImu and PlaceFixes to a stage in the order of their stamps; return Said.
 
-    late_ns: by how much a fix comes later than its stamp.
+    late_ns: delay of a fix after its stamp.
     """
     waiting = list(fixes)
     for t_ns, omega, f in zip(imu.t_ns.tolist(), map(tuple, imu.omega.tolist()),
@@ -102,7 +102,7 @@ def same_bits(said, states):
 
 
 def reference_of(fixes):
-    """Return the Reference of PlaceFixes, for navigate."""
+    """Return the Reference of PlaceFixes for navigate."""
     return Reference('fix', SampledTrack(np.array([f.t_ns for f in fixes], dtype=np.int64),
                                          np.array([f.place for f in fixes])))
 
@@ -110,9 +110,10 @@ def reference_of(fixes):
 def vehicle(rest_s=20.0, length_s=60.0, rate_hz=50.0, heading=1.2, lat=0.87, noise=(2e-4, 0.01),
             bias=(3e-4, -2e-4, 4e-4), seed=1):
     """
-    Return a RecordedImu and PlaceFixes of a level car: at rest, then off along its heading.
+    Return a RecordedImu and PlaceFixes of a level car: at rest, then driving along its heading.
 
-    noise: of rate and specific force, a sample; bias: of the gyros, rad/s.
+    noise: sigma of rate (rad/s) and specific force (m/s^2) in each sample; bias: of the gyros,
+    rad/s.
     """
     rng = np.random.default_rng(seed)
     t = np.arange(round(length_s * rate_hz) + 1) / rate_hz
@@ -136,6 +137,6 @@ def vehicle(rest_s=20.0, length_s=60.0, rate_hz=50.0, heading=1.2, lat=0.87, noi
 
 
 def as_sent(fixes):
-    """Return PlaceFixes as they are after conversion to messages, in degrees."""
+    """Return PlaceFixes after conversion to messages, which hold degrees."""
     return [f._replace(lat=float(np.radians(np.degrees(f.lat))),
                        lon=float(np.radians(np.degrees(f.lon)))) for f in fixes]

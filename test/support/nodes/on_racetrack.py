@@ -14,7 +14,7 @@ FLIGHT = {'rate_hz': 100.0, 'time.epoch': 'fixed', 'time.epoch_s': 0, **MOTION}
 
 
 class Flown(FedNodes):
-    """Nodes that hear the truth of a racetrack; ``heard`` has the messages of each topic."""
+    """Nodes that receive the truth of a racetrack; ``heard`` has the messages of each topic."""
 
     def __init__(self, **nodes):
         super().__init__(nodes)
@@ -29,7 +29,7 @@ class Flown(FedNodes):
         return self
 
     def fly(self, count):
-        """Send so many samples."""
+        """Send a number of samples."""
         for _ in range(count):
             for topic, data in zip(topics.TRUTH, self._source.messages(self._k)):
                 self.bus.put(topic.name, data)
@@ -38,5 +38,5 @@ class Flown(FedNodes):
             self.bus.drive()
 
     def said(self, node):
-        """Return what a node has said."""
+        """Return the log messages of a node."""
         return '\n'.join(self.logs[node].kept)

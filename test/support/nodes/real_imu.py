@@ -1,4 +1,4 @@
-"""The node strapdown without truth, fed with the bytes of a real or made IMU, without DDS."""
+"""The node strapdown without truth, fed with messages of a real or synthetic IMU, without DDS."""
 
 from collections import defaultdict
 
@@ -14,7 +14,7 @@ IMU, FIX = topics.IMU_RAW.name, topics.GNSS_FIX.name
 
 
 class RealImuGraph(FedNodes):
-    """strapdown with parameters beside LIVE; ``heard`` is {topic: {stamp_ns: bytes}}."""
+    """Node strapdown; parameters in addition to LIVE; ``heard`` is {topic: {stamp_ns: bytes}}."""
 
     def __init__(self, **parameters):
         super().__init__({'strapdown': {**LIVE, **parameters}})
@@ -29,7 +29,7 @@ class RealImuGraph(FedNodes):
 
     @property
     def said(self):
-        """All that the node has said, one text."""
+        """All log messages of the node as one text."""
         return '\n'.join(self.logs['strapdown'].kept)
 
     def call(self, service):
@@ -40,7 +40,7 @@ class RealImuGraph(FedNodes):
         return found.success, found.message
 
     def send(self, messages):
-        """Send (topic, bytes), and let the node answer each."""
+        """Send (topic, bytes), and let the node process each message."""
         for name, data in messages:
             self.bus.put(name, data)
             self.bus.drive()

@@ -1,4 +1,4 @@
-"""A node of the test process that publishes given messages, for recorder and player."""
+"""A node in the test process that publishes given messages to a recorder or for a player."""
 
 import time
 
@@ -7,7 +7,7 @@ from support.live import GUARD_S
 
 
 class Talker:
-    """Publishes bytes or messages on any topics, in a context of its own."""
+    """Publish bytes or messages on any topic, in a context of its own."""
 
     def __init__(self, domain):
         import rclpy
@@ -18,31 +18,31 @@ class Talker:
 
     def publisher(self, message_class, name, reliability='reliable', durability='volatile',
                   depth=1000):
-        """Return a publisher of such a quality of service."""
+        """Return a publisher with the given quality of service."""
         from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
         return self.node.create_publisher(message_class, name, QoSProfile(
             depth=depth, reliability=ReliabilityPolicy[reliability.upper()],
             durability=DurabilityPolicy[durability.upper()]))
 
     def imu(self, name='imu'):
-        """Return a publisher of Imu."""
+        """Return a publisher of Imu messages."""
         from sensor_msgs.msg import Imu
         return self.publisher(Imu, name)
 
     def imu_bytes(self, stamp_ns):
-        """Return an Imu message that knows its stamp in its values."""
+        """Return an Imu message whose values encode its stamp."""
         return self._writer.pack(stamp_ns, (stamp_ns * 1e-9, 0.0, 0.0), (0.0, 0.0, 9.8))
 
     def wait_matched(self, *publishers, timeout_s=GUARD_S):
-        """Wait until each publisher has a reader."""
+        """Wait until each publisher has a subscriber."""
         end = time.monotonic() + timeout_s
         while not all(p.get_subscription_count() for p in publishers):
             assert time.monotonic() < end, [p.topic_name for p in publishers]
             time.sleep(0.02)
-        # discovery is not symmetric: a reader may know of its publisher a moment later
+        # Discovery is not symmetric: a reader may discover its publisher a moment later.
         time.sleep(0.3)
 
     def close(self):
-        """Leave the domain."""
+        """Shut down the context."""
         self.node.destroy_node()
         self.context.shutdown()

@@ -1,1 +1,1 @@
-"""Readings of an IMU that tests share: at rest, in motion, on a bench."""
+"""IMU readings shared by tests: at rest, in motion, on a test bench."""

@@ -1,4 +1,4 @@
-"""Records of a bench for the tests of the estimate of delays."""
+"""Bench records for the tests of the delay estimation."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from support.studies import settings
 
 FOG = {name: value for name, value in preset('tactical_fog').items()
        if name.startswith('gyro.errors.')}
-# Rocking about the diagonal of the body.
+# Oscillation about the diagonal of the body axes.
 DIAGONAL = {'motion.kind': 'rocking', 'motion.psi_deg': 35.26438968, 'motion.theta_deg': -45.0,
             'motion.gamma_deg': 0.0}
 MOTION_2 = {'motion.kind': 'two_axis', 'motion.theta_deg': -30.0}
@@ -25,7 +25,7 @@ DELAYS = {'gyro.delay_us.x': 2.0, 'gyro.delay_us.y': 1.0, 'gyro.delay_us.z': 3.0
 
 
 def ideal(values, duration_s, start_s=0.0):
-    """Return the BenchRecord of delayed gyros without errors, and SimulationSettings."""
+    """Return the BenchRecord of gyros with delays and no other error, and SimulationSettings."""
     chosen = settings(values)
     generator, sensor = chosen.motion_generator, chosen.imu_sensor
     motion = make_motion(generator.motion, generator.datum, generator.earth)
@@ -37,7 +37,7 @@ def ideal(values, duration_s, start_s=0.0):
 
 
 def read(record, chosen, seed):
-    """Return a BenchRecord as the gyros of SimulationSettings read it with a seed."""
+    """Return a BenchRecord read by the gyros of SimulationSettings with a seed."""
     dt_ns, imu = record.dt_ns, record.imu
     triad = TriadErrors(chosen.imu_sensor.gyro.errors, seed, 0, 'gyro.errors', dt_ns * 1e-9)
     omega = triad.advance(int(imu.t_ns[0]) // dt_ns, imu.omega, imu.f, imu.t_ns * 1e-9)
@@ -45,5 +45,5 @@ def read(record, chosen, seed):
 
 
 def thinned(record, kept):
-    """Return a BenchRecord of the readings where an array is true."""
+    """Return a BenchRecord of the readings selected by a mask."""
     return replace(record, imu=record.imu[np.asarray(kept)])

@@ -1,4 +1,4 @@
-"""An IMU at rest: as a record, and as the messages of a recording."""
+"""An IMU at rest: as a record, and as the messages of a bag."""
 
 import ins_sim
 import numpy as np
@@ -6,7 +6,7 @@ from support.recordings import imu_messages
 
 
 def record_at_rest(count=3000, **changed):
-    """Return the ImuRecord of a sensor at rest, with some arrays changed."""
+    """Return the ImuRecord of a sensor at rest, with some arrays replaced."""
     arrays = {'t_ns': 10_000_000 * np.arange(count),
               'omega': np.tile([0.0, 5.16e-5, 5.16e-5], (count, 1)),
               'f': np.tile([0.0, 0.0, 9.806], (count, 1)), **changed}
@@ -18,6 +18,6 @@ IMU_ONLY = dict(t_ns=np.arange(1000) * 20_000_000, omega=np.zeros((1000, 3)),
 
 
 def resting(count=1000, **changes):
-    """Return IMU messages of a standstill."""
+    """Return IMU messages of a sensor at rest."""
     values = {name: x[:count] for name, x in IMU_ONLY.items()}
     return imu_messages(**{**values, **changes})

@@ -1,4 +1,4 @@
-"""Exact records of an IMU for the tests of post-processing."""
+"""Error-free records of an IMU for the tests of post-processing."""
 
 import numpy as np
 
@@ -19,13 +19,13 @@ SECOND = 1_000_000_000
 
 
 def stamps(rate_hz, length_s=20.0, start_s=1.0):
-    """Return the stamps of a uniform rate."""
+    """Return stamps at a uniform rate, ns."""
     count = round(length_s * rate_hz)
     return round(start_s * SECOND) + np.arange(count + 1, dtype=np.int64) * round(SECOND / rate_hz)
 
 
 def recorded(t_ns, motion=MOTION):
-    """Return RecordedImu and Reference, exact, of the motion at stamps."""
+    """Return the error-free RecordedImu and Reference of the motion at stamps."""
     truth = motion.at(t_ns)
     position = np.stack([truth.lat, truth.lon, truth.height], -1)
     reference = Reference('truth', SampledTrack(t_ns, position),
@@ -35,14 +35,14 @@ def recorded(t_ns, motion=MOTION):
 
 
 def run(imu, reference, **values):
-    """Return the Navigation of settings by dotted name, with __ for a dot."""
+    """Return the Navigation for settings by dotted name, with __ in place of a dot."""
     chosen = build(NavigateSettings, {**AIR, **{k.replace('__', '.'): v
                                                 for k, v in values.items()}})
     return navigate(chosen, Sources('the record', imu, 'base_link', reference))
 
 
 def end_errors(navigation):
-    """Return position error, m, and attitude error, rad, at the end."""
+    """Return position error, m, and attitude error, rad, at the end of a navigation."""
     comparison = navigation.comparisons[0]
     return (np.linalg.norm(comparison.position.values[-1]),
             np.linalg.norm(comparison.attitude.values[-1]))

@@ -1,1 +1,1 @@
-"""What the tests of reports draw, and the browser that opens them."""
+"""Charts for the tests of reports, and the browser that opens the reports."""

@@ -1,4 +1,4 @@
-"""A report in a browser: what headless Chromium shows of it, without any library."""
+"""Open a report in headless Chromium and measure what it shows, without a browser library."""
 
 from html import unescape
 import json
@@ -12,10 +12,10 @@ import pytest
 from support.places import ROOT
 
 NAMES = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable')
-# Where the screenshots stay, to be looked at before a release.
+# Folder of the screenshots, which are inspected before a release.
 SCREENSHOTS = ROOT / 'build' / 'screenshots'
 GUARD_S = 300.0
-# Before anything of the page: its errors, also those that a library only prints.
+# Inserted before the page: collects its errors, also those that a library only prints.
 LISTEN = """<script>
 const heard = [];
 window.addEventListener('error', event => heard.push(String(event.message)), true);
@@ -23,7 +23,7 @@ window.addEventListener('unhandledrejection', event => heard.push(String(event.r
 for (const name of ['error', 'warn'])
   console[name] = (...words) => heard.push(words.map(String).join(' '));
 </script>"""
-# After it: once the figures are drawn, what is seen.
+# Inserted after the page: measures the figures once they are drawn.
 LOOK = """<script>
 function canvases(node, found = []) {
   for (const child of node.querySelectorAll('*')) {
@@ -63,8 +63,8 @@ const wait = setInterval(() => {
   setTimeout(look, 500);
 }, 50);
 </script>"""
-# A window is never narrower than 500 pixels: the report stands in a frame of the width that is
-# asked for.
+# A window of Chromium is never narrower than 500 pixels; therefore the report is shown in a frame
+# of the required width.
 FRAME = """<!DOCTYPE html><body style="margin: 0; overflow: hidden"><script>
 addEventListener('message', event => {{
   const said = document.createElement('pre');
@@ -76,7 +76,7 @@ addEventListener('message', event => {{
 
 
 def find_browser():
-    """Return the path of Chromium; skip without one, and fail in CI."""
+    """Return the path of Chromium; without it skip the test, or fail in CI."""
     for name in NAMES:
         path = shutil.which(name)
         if path:
@@ -89,9 +89,9 @@ def find_browser():
 
 def seen(page, width, height, folder, name):
     """
-    Return what Chromium shows of a report at a width of the window, as a dict.
+    Return as a dict what Chromium shows of a report in a window of a given width.
 
-    page: path of the report; folder: for the copy that is opened; name: of the screenshot.
+    page: path of the report; folder: where the opened copy is written; name: of the screenshot.
     """
     text = Path(page).read_text(encoding='utf-8')
     text = text.replace('<head>', f'<head>{LISTEN}', 1).replace('</body>', f'{LOOK}</body>')

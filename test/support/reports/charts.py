@@ -1,4 +1,4 @@
-"""Charts that hold every mark, for the tests of what draws them."""
+"""Charts with every kind of mark, for the tests of the renderers."""
 
 from ins_sim.report.charts.chart import (Band, Bars, Chart, CIRCLE, CROSS, Curve, DASH_DOT, DASHED,
                                          DOT, DOTTED, Level, LOG, Map, Markers, Panel, Stack,
@@ -9,7 +9,7 @@ T = np.linspace(0.0, 60.0, 500)
 
 
 def every_mark():
-    """Return Charts in which each mark, scale and layout is found."""
+    """Return Charts in which each mark, scale and layout occurs."""
     over_time = Chart('over_time', 'A title <of> & "many"', (
         Panel((Stretch(10.0, 20.0, 'shaded'), Band(T, -T, T, '3 sigma'),
                Curve(T, np.sin(T) * T, 'east'), Curve(T, np.cos(T) * T, 'north', dash=DASHED),

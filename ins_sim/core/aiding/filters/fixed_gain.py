@@ -7,7 +7,7 @@ from ins_sim.core.numerics.fixed_order import applied
 from ..velocity_window import DoubleIntegral, Integrals
 from .base import AidingFilter, FixOutcome, refused_fix
 
-# Ivanov (2015) takes the acceleration in body axes for the derivative of the velocity in body
+# Ivanov (2015) uses the acceleration in body axes as the derivative of the velocity in body
 # axes. A window in which the neglected product rate x velocity is larger than this is refused,
 # m/s^2.
 TURN_LIMIT = 0.01
