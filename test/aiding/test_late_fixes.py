@@ -98,7 +98,7 @@ def test_a_fix_older_than_the_buffer_is_not_taken():
 
 
 def test_a_fix_that_comes_twice_is_taken_once():
-    """A fix delivered twice is used once; the reason of the second is 'has come before'."""
+    """A fix delivered twice is used once; the second is refused as already received."""
     nav, once = navigator(), navigator()
     taken = fly(nav, [FIXES[3], FIXES[3]])
     fly(once, [FIXES[3]])
