@@ -80,7 +80,7 @@ def test_settings_of_the_wrong_function_are_refused():
 BAD = [
     ({'t_ns': 0.01 * np.arange(100)}, 't_ns is an array of float64'),
     ({'t_ns': np.zeros((100, 1), dtype=int)}, r'shape \(100, 1\)'),
-    ({'t_ns': np.r_[0:50, 49:99]}, r't_ns\[50\] is 49 after 49; expected rising'),
+    ({'t_ns': np.r_[0:50, 49:99]}, r't_ns\[50\] is 49 after 49; expected increasing'),
     ({'t_ns': 10 * np.arange(100)}, 't_ns has a median step of 10 ns; expected at least 50000 ns'),
     ({'omega': np.zeros((99, 3))}, r'omega .*expected .* of shape \(100, 3\)'),
     ({'f': np.zeros((3, 100))}, r'f .*expected .* of shape \(100, 3\)'),

@@ -21,7 +21,7 @@ def test_angles_that_turned_on_are_brought_back(folder, name, beyond):
     for row in table[20:30]:
         row[COLUMNS.index(name)] = repr(beyond)
     motion = accepted(save(folder / 'turned.csv', table))
-    assert f'10 values of {name} beyond' in motion.warnings[0]
+    assert f'10 values of {name} outside' in motion.warnings[0]
     assert np.abs(motion.at([0]).q_nb - plain.at([0]).q_nb).max() < 1e-12
 
 

@@ -25,7 +25,7 @@ NONSENSE = [
     ('imu_sensor', FAULT + 'channel', 'gyro_1_y', ' cannot be set: gyro.model is ideal; expected '
      'dtg: gyro.dtg.fault applies to tuned gyros only'),
     ('gnss', 'outages.end_s', [1.0], 'outages.start_s has 0 entries and outages.end_s 1; expected '
-     'as many'),
+     'equal numbers'),
     ('gnss', 'outages.start_s', [-1.0], ' is -1 s; expected 0 to 1e+07 s'),
     ('gnss', 'outages.start_s', 5.0, ' is 5.0; expected a list'),
     ('gnss', 'seed', 3, 'seed is read-only, because it is read at the start; can be set while the '
