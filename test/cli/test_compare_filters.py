@@ -83,7 +83,8 @@ def test_an_interrupted_study_goes_on(tmp_path, capsys, monkeypatch):
 @pytest.mark.parametrize('words, sentence', [
     (['--runs', '0'], 'runs is 0; expected a whole number from 1 to 100000'),
     (['--jobs', '-1'], 'jobs is -1; expected 0 (all cores) or more'),
-    (['--scheduler', 'tcp://127.0.0.1:1'], 'there is no Dask scheduler at tcp://127.0.0.1:1'),
+    pytest.param(['--scheduler', 'tcp://127.0.0.1:1'],
+                 'there is no Dask scheduler at tcp://127.0.0.1:1', marks=pytest.mark.slow),
     (['--scheduler', 'tcp://127.0.0.1:1', '--jobs', '2'], 'jobs is 2, and a scheduler is given'),
     (['--cycles', '0'], 'cycles is 0; expected 1 to 100000'),
     (['-p', 'duration_s:=1e6'], 'duration_s is 1e+06 s; expected at most'),

@@ -22,6 +22,8 @@ READ_ONLY = {'record', 'play', 'demo', 'loop-study', 'delay-study', 'dtg-study'}
 FRAGMENTS = {
     'docs/design/bags.md': 'shows the calls on a bag that the text supposes',
     'docs/design/recorded_truth.md': 'shows the calls with settings that the text supposes'}
+# Pages whose commands compute for more than 10 s.
+LONG = ('docs/how_to/ensembles.md', 'docs/tutorials/data_sheet.md', 'docs/tutorials/error_budget.md')
 # Enough for every filter and estimate, and computed in a second or two.
 SHORT = ['-p', 'duration_s:=10.0']
 
@@ -99,7 +101,9 @@ def here(tmp_path, monkeypatch, request):
     return flight
 
 
-@pytest.mark.parametrize('page', PAGES, ids=page_id)
+@pytest.mark.parametrize('page', [
+    pytest.param(page, marks=[pytest.mark.slow] * (page_id(page) in LONG)) for page in PAGES],
+    ids=page_id)
 def test_examples_of_a_page(page, here, capsys):
     """
     Commands, Python blocks and parameter files of a page work in their order, in one folder.

@@ -5,6 +5,7 @@ import io
 import time
 import warnings
 
+import pytest
 from support.hostile.files import Hostile, KINDS
 
 COUNT = 5000
@@ -14,6 +15,7 @@ FOUND = (7879, 17899, 40759)
 GUARD_S = 60.0
 
 
+@pytest.mark.slow
 def test_mutated_files_end_in_a_result_or_a_sentence(tmp_path, capsys):
     """5000 mutations of every format give a result or one message; a seed identifies each."""
     hostile, failures = Hostile(tmp_path), []

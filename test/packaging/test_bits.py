@@ -30,6 +30,7 @@ def test_the_bits_are_those_stored(bits):
     expect(bits.in_child(options=['--plain']), bits)
 
 
+@pytest.mark.slow
 def test_an_older_processor_gives_the_same_bits(bits):
     """Without AVX and fused multiply-add the digests are the same."""
     expect(bits.in_child(bits.older_processor(), ['--plain']), bits)

@@ -14,6 +14,7 @@ pytestmark = pytest.mark.live
 NODES = ('recorder', 'strapdown', 'imu_sensor', 'motion_generator')
 
 
+@pytest.mark.slow
 def test_a_short_soak(ros_domain, tmp_path):
     """The exit code is 0; losses, latency, memory, handles, CPU and load are printed."""
     ended = subprocess.run(

@@ -38,7 +38,7 @@ def test_a_missing_model_is_said_in_one_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, 'pygeomag', None)
     magnetic_field._model.cache_clear()
     with pytest.raises(ValueError, match='magnetometer.publish is true and pygeomag cannot be '
-                       r'imported \(.*\); expected it .*extra magnetic of ins_sim'):
+                       r'imported \(.*\); expected this package .*extra magnetic of ins_sim'):
         environment.EnvironmentSensors(build(ImuSensorSettings, {'magnetometer.publish': True}))
 
 

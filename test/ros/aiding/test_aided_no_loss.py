@@ -18,6 +18,7 @@ HEARD = {topics.TRUTH_IMU: RATE_HZ, topics.IMU_RAW: RATE_HZ, topics.INS_ODOMETRY
          topics.AIDED_ODOMETRY: RATE_HZ, topics.AIDED_SIGMAS[2]: RATE_HZ, topics.GNSS_FIX: 1}
 
 
+@pytest.mark.slow
 def test_real_time_loses_nothing(ros_domain, tmp_path):
     """
     In real time each topic is complete from its first received message to the last instant.
