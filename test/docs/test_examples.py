@@ -23,7 +23,8 @@ FRAGMENTS = {
     'docs/design/bags.md': 'shows the calls on a bag that the text supposes',
     'docs/design/recorded_truth.md': 'shows the calls with settings that the text supposes'}
 # Pages whose commands compute for more than 10 s.
-LONG = ('docs/how_to/ensembles.md', 'docs/tutorials/data_sheet.md', 'docs/tutorials/error_budget.md')
+LONG = ('docs/how_to/ensembles.md', 'docs/tutorials/data_sheet.md',
+        'docs/tutorials/error_budget.md')
 # Enough for every filter and estimate, and computed in a second or two.
 SHORT = ['-p', 'duration_s:=10.0']
 
