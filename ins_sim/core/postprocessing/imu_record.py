@@ -81,7 +81,7 @@ def ordered_samples(imu):
         more = '' if not repeated else (
             f', and {repeated} with the stamp of the one before, {seconds(good.t_ns[0])}')
         way = '' if not repeated else (
-            '; stamps.source log uses the times of logging of a bag, and stamps.source even '
+            '; stamps.source log uses the log times of a bag, and stamps.source even '
             'computes the stamps from stamps.rate_hz')
         raise ValueError(f'the IMU has {len(imu)} samples, {losses.not_finite} of them not finite '
                          f'and {losses.out_of_order} out of order{more}; expected at least two '
