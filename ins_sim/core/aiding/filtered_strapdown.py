@@ -11,10 +11,21 @@ class FilteredStrapdown:
     """
     A CorrectedStrapdown, an AidingFilter and the start of the open window; a copy is a snapshot.
 
-    window_ns: length of the windows of the velocity meter; step_ns: distance between their ends.
     For overlapping windows the filters have no sums over the window; each step is then treated as
-    a window.  takes_segments: whether several samples can be processed in one call, because the
-    filter does not override ``step``.
+    a window.
+
+    Parameters
+    ----------
+    ins : CorrectedStrapdown
+    filter_ : AidingFilter
+    window_ns : length of the windows of the velocity meter, ns
+    step_ns : distance between the ends of the windows, ns
+
+    Attributes
+    ----------
+    ins, filter : as given
+    takes_segments : whether several samples can be processed in one call, because the filter does
+        not override ``step``
     """
 
     def __init__(self, ins, filter_, window_ns, step_ns):

@@ -10,8 +10,20 @@ def innovation(p, h, r):
     """
     Return S = H P H' + R and the gain P H' S^-1.
 
-    p (n, n): covariance; h (m, n): measurement matrix; r (m, m): measurement covariance.  Raises
-    numpy.linalg.LinAlgError if S is singular.
+    Parameters
+    ----------
+    p : (n, n) covariance
+    h : (m, n) measurement matrix
+    r : (m, m) measurement covariance
+
+    Returns
+    -------
+    S : (m, m)
+    gain : (n, m)
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError : if S is singular
     """
     ph = product(p, h.T)
     s = product(h, ph) + r

@@ -27,8 +27,16 @@ class MountingCalibration:
     The sigma of dpsi leaves out the part of the INS error that is not quadratic in time: 0.7
     arcmin for a mid-grade INS.
 
-    dpsi: azimuth error, rad; total: mu + dpsi by equation (27), rad; fitted, k_z: mu + dpsi and
-    the lateral scale error by least squares.
+    Attributes
+    ----------
+    dpsi : azimuth error, rad
+    dpsi_sigma : its standard deviation, rad
+    total : mu + dpsi by equation (27), rad
+    fitted : mu + dpsi by least squares, rad
+    fitted_sigma : its standard deviation, rad
+    k_z : lateral scale error by least squares
+    k_z_sigma : its standard deviation
+
     """
 
     dpsi: float

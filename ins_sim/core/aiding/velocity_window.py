@@ -73,9 +73,14 @@ class WindowSums(NamedTuple):
     """
     All sums of a filter; those it does not ask for are None.
 
-    mean: BodyMean; integrals: Integrals; accelerations: two DoubleIntegrals, of the acceleration
-    in b and of its part rate x velocity; turned: rotation about the vertical axis of b, rad;
-    force: Force.
+    Attributes
+    ----------
+    mean : BodyMean
+    integrals : Integrals
+    accelerations : two DoubleIntegrals, of the acceleration in b and of its part rate x velocity
+    turned : rotation about the vertical axis of b, rad
+    force : Force
+
     """
 
     mean: tuple
