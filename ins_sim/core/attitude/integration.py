@@ -125,8 +125,15 @@ class Orientation:
     """
     The attitude of b, integrated by one of KINDS.
 
-    kind: poisson, euler_vector or quaternion; q: initial q_nb, a unit quaternion.  state: nine,
-    three or four floats, which can be saved and restored.
+    Parameters
+    ----------
+    kind : poisson, euler_vector or quaternion
+    q : initial q_nb, a unit quaternion
+
+    Attributes
+    ----------
+    state : nine (poisson), three (euler_vector) or four floats (quaternion), which can be saved
+        and restored
     """
 
     def __init__(self, kind, q=quaternion.IDENTITY):

@@ -45,9 +45,13 @@ def newton_differences(last, value, r1, r2, r3):
     """
     Return the divided differences d0..d3 at a new sample, newest first.
 
-    last: the differences at the sample before; value: the new vector; r1, r2, r3: reciprocals of
-    the times since the last three samples, 1/s, zero for a sample that does not exist; the order
-    is then lower.
+    Parameters
+    ----------
+    last : the differences at the sample before
+    value : the new vector, three components
+    r1, r2, r3 : reciprocals of the times since the last three samples, 1/s, zero for a sample that
+        does not exist; the order is then lower
+
     """
     x, y, z = value
     d = [value]
