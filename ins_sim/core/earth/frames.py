@@ -20,8 +20,14 @@ class MapFrame:
     """
     Conversion between m and geodetic coordinates with attitude and velocity in n.
 
-    datum: settings.Datum; rotation: whether the Earth rotates.  omega_ie_m: rate of the Earth,
-    resolved in m, rad/s, a tuple of floats.
+    Parameters
+    ----------
+    datum : settings.Datum
+    rotation : whether the Earth rotates
+
+    Attributes
+    ----------
+    omega_ie_m : rate of the Earth, resolved in m, rad/s, a tuple of floats
     """
 
     def __init__(self, datum, rotation):

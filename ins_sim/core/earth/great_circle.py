@@ -118,9 +118,19 @@ class GreatCircleRoute:
     point that halves the angle between the legs, so that a turn flown inside the corner changes
     legs at its middle. Legs are followed in order only, so that a route may cross itself.
 
-    lat, lon: turning points, rad, sequences of two or more.  legs: a Leg for each pair; starts:
-    distance along the route to the first point of each leg, m; length: total, m.  Raises
-    ValueError, with one sentence, for an invalid route.
+    Parameters
+    ----------
+    lat, lon : turning points, rad, sequences of two or more
+
+    Attributes
+    ----------
+    legs : a Leg for each pair of turning points
+    starts : distance along the route to the first point of each leg, m
+    length : total length, m
+
+    Raises
+    ------
+    ValueError : with one sentence, for an invalid route
     """
 
     def __init__(self, lat, lon):

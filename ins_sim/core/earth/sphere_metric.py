@@ -47,7 +47,17 @@ def across_leg(leg, lat, lon, height, v_n):
     is in metres on the sphere, which differ by up to 0.6 %. The velocity component is normal to
     the line of constant Z.
 
-    leg: great_circle.Leg; lat, lon: rad; height: m; v_n: east, north, up, m/s; floats or arrays.
+    Parameters
+    ----------
+    leg : great_circle.Leg
+    lat, lon : position of the vehicle, rad, floats or arrays
+    height : m, float or array
+    v_n : velocity east, north, up, m/s, floats or arrays
+
+    Returns
+    -------
+    z : offset to the right of the leg, m
+    v_z : its rate, m/s
     """
     _, z = leg.to_xz(lat, lon)
     m_e, m_n, _, _ = sphere_metric(*sincos(lat), height)
