@@ -18,7 +18,11 @@ class ReducedCases(NamedTuple):
     """
     Parameters in which the flights differ, (n,) each.
 
-    gain: see ``linear_loop.Aiding``; k_z: lateral scale error; offset: initial z, m.
+    Attributes
+    ----------
+    gain : see ``linear_loop.Aiding``
+    k_z : lateral scale error
+    offset : initial z, m
     """
 
     gain: np.ndarray

@@ -33,9 +33,13 @@ class Aiding(NamedTuple):
     """
     A navigator aided by a meter with windows of N cycles; a cycle is a control period.
 
-    kind: one of KINDS; cycles: N; step: cycles between the ends of windows, a divisor of N, and N
-    for paper_corrected; gain: for conventional the fraction of the error that a fix removes (K_v
-    times the step if windows slide), for paper_corrected K.
+    Attributes
+    ----------
+    kind : one of KINDS
+    cycles : N
+    step : cycles between the ends of windows, a divisor of N, and N for paper_corrected
+    gain : for conventional the fraction of the error that a fix removes (K_v times the step if
+        windows slide), for paper_corrected K
     """
 
     kind: str

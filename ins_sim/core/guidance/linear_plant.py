@@ -18,9 +18,16 @@ class LateralLoop(NamedTuple):
     """
     A vehicle that an autopilot keeps on its leg.
 
-    speed: V, m/s; side_force: Z_b, m/s^2 per rad; lag_s: tau_b; k1: rad/m; k2: rad/(m/s);
-    period_s: time between control instants; latency: in whole periods; ramps: True if the command
-    changes linearly over a period, False if it jumps.
+    Attributes
+    ----------
+    speed : V, m/s
+    side_force : Z_b, m/s^2 per rad
+    lag_s : tau_b, s
+    k1 : gain of the offset z, rad/m
+    k2 : gain of its rate v, rad/(m/s)
+    period_s : time between control instants, s
+    latency : in whole periods
+    ramps : True if the command changes linearly over a period, False if it jumps
     """
 
     speed: float

@@ -12,8 +12,14 @@ def phase_margin(gains, force, lag_s, delay_s):
     """
     Return the phase margin, rad, of the loop force (k1 + k2 s) e^(-s delay)/(s^2 (lag s + 1)).
 
-    gains: k1 (rad/m) and k2 (rad s/m); force: m/s^2 per rad; delay_s: latency plus control period,
-    because the command is reached at the end of a period.  Return None if the gains are zero.
+    Return None if the gains are zero.
+
+    Parameters
+    ----------
+    gains : k1 (rad/m) and k2 (rad s/m)
+    force : m/s^2 per rad
+    lag_s : lag, s
+    delay_s : latency plus control period, s, because the command is reached at the end of a period
     """
     k1, k2 = gains
     if k1 == k2 == 0.0:

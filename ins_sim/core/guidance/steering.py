@@ -21,8 +21,12 @@ class SteeringCommand(NamedTuple):
     """
     The command at a control instant, and its origin.
 
-    t_ns: the instant; beta: sideslip, rad; z, v_z: the estimate, m and m/s, zero without one; why:
-    '' if the autopilot steers, otherwise the reason why the vehicle flies straight.
+    Attributes
+    ----------
+    t_ns : the instant, motion time, ns
+    beta : sideslip, rad
+    z, v_z : the estimate, m and m/s, zero without one
+    why : '' if the autopilot steers, otherwise the reason why the vehicle flies straight
     """
 
     t_ns: int
