@@ -23,9 +23,14 @@ class BenchMotion(Motion):
     """
     A motion at a fixed position, with an optional small excursion about it.
 
-    attitude, constants: a function of ``bench_attitudes`` and its constants; datum: Datum of the
-    place; excursion: function from the Series of time to the displacement east, north, up (m), or
-    None; earth: Earth; period_s: see Motion.
+    Parameters
+    ----------
+    attitude : a function of ``bench_attitudes``
+    constants : the constants of that function
+    datum : Datum of the place
+    excursion : function from the Series of time to the displacement east, north, up (m), or None
+    earth : Earth
+    period_s : see Motion
     """
 
     def __init__(self, attitude, constants, datum, excursion, earth, period_s):

@@ -48,10 +48,17 @@ class SteeredHistory:
     """
     The control periods of a flight in sequence.
 
-    force, lag_s: see ``moved_on``; period_ns: length of a control period; start: z (m) and v_z
-    (m/s) at motion time zero; until ``begin`` the vehicle flies straight from there.
+    Parameters
+    ----------
+    force, lag_s : see ``moved_on``
+    period_ns : length of a control period, ns
+    start : z (m) and v_z (m/s) at motion time zero; until ``begin`` the vehicle flies straight
+        from there
 
-    known_ns: motion time up to which the motion is known.
+    Attributes
+    ----------
+    known_ns : motion time up to which the motion is known, ns
+
     """
 
     def __init__(self, force, lag_s, period_ns, start):

@@ -25,8 +25,17 @@ class Gusts:
     """
     Gust velocity east, north, up, each with the standard deviation sigma (m/s).
 
-    length: scale of the turbulence, m; airspeed: m/s; seed: selects the gusts.  rates (3, LINES),
-    rad/s; amplitude: of each sinusoid, m/s.
+    Parameters
+    ----------
+    sigma : standard deviation of each component, m/s
+    length : scale of the turbulence, m
+    airspeed : m/s
+    seed : selects the gusts
+
+    Attributes
+    ----------
+    rates : (3, LINES) angular frequencies of the sinusoids, rad/s
+    amplitude : amplitude of each sinusoid, m/s
     """
 
     def __init__(self, sigma, length, airspeed, seed):

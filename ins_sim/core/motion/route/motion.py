@@ -39,9 +39,22 @@ class RouteMotion(Motion):
 
     Weave and gusts are added to the track; they displace it by metres.
 
-    end_s: arrival at the last turning point.  route: the Route; gusts: Gusts or None; turns:
-    (start, end) of each turn, s.  Raises ValueError, with one sentence, for a route that cannot
-    be flown.
+    Parameters
+    ----------
+    settings : settings.FlownRouteSettings
+    earth_settings : Earth
+
+    Attributes
+    ----------
+    end_s : arrival at the last turning point, motion time, s
+    route : GreatCircleRoute
+    gusts : Gusts or None
+    wind : wind velocity, east and north, m/s
+    turns : (start, end) of each turn, motion time, s
+
+    Raises
+    ------
+    ValueError : with one sentence, for a route that cannot be flown
     """
 
     end_name = 'the arrival at the last turning point'

@@ -76,8 +76,13 @@ class LegPiece:
     """
     Knots of one piece of the track.
 
-    t (m,): time since its start, s; lat, lon, psi (m,): rad; turn (m, j): Taylor coefficients of
-    the turn rate at each knot; length_s: duration.
+    Attributes
+    ----------
+    t : (m,) time since the start of the piece, s
+    lat, lon : (m,) geodetic latitude and longitude, rad
+    psi : (m,) heading of the air velocity, rad
+    turn : (m, j) Taylor coefficients of the turn rate at each knot
+    length_s : duration of the piece, s
     """
 
     def __init__(self, t, lat, lon, psi, turn, length_s):
