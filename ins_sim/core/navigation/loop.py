@@ -11,7 +11,15 @@ class Decimation:
 
     Periods are counted by the stamps, so that a gap does not shift the outputs after it.
 
-    every: n; dt_ns: sampling period; first_ns: instant of the first output, or None.
+    Parameters
+    ----------
+    every : n, number of sampling periods from one published output to the next
+    dt_ns : sampling period, ns
+
+    Attributes
+    ----------
+    first_ns : instant of the first output, ns, or None before it
+
     """
 
     def __init__(self, every, dt_ns):
@@ -107,8 +115,18 @@ class NavigationLoop:
         The navigator's ``advance`` processes a whole stretch and returns its outputs; they belong
         to the last samples of the stretch if the solution began within it.
 
-        t_ns (n,): the stamps; columns: the other arguments of ``advance``; first: index of the
-        first output; due: see ``Decimation.due_rows``, relative to first.
+        Parameters
+        ----------
+        t_ns : (n,) stamps, ns
+        columns : the other arguments of ``advance``, each with n rows
+
+        Yields
+        ------
+        first : index of the first output among the n samples
+        output : what ``advance`` returned
+        due : rows of the output that are published, see ``Decimation.due_rows``; they are counted
+            from first
+
         """
         regular = np.ones(len(t_ns), dtype=bool)
         regular[1:] = is_regular(np.diff(t_ns), self.dt_ns)

@@ -89,9 +89,18 @@ class RecordedLoop(NavigationLoop):
     """
     Steps a RecordedNavigator until the first gap, or across gaps by linear interpolation.
 
-    step_ns: typical step of the stamps; limit_ns: longest step that is not a gap; bridges_ns:
-    longest gap that is bridged, 0 to bridge no gap.  gap: description of the gap that ended the
-    loop, or None; bridged: number of gaps bridged.
+    Parameters
+    ----------
+    make_navigator : see NavigationLoop
+    step_ns : typical step of the stamps, ns
+    limit_ns : longest step that is not a gap, ns
+    bridges_ns : longest gap that is bridged, ns; 0 to bridge no gap
+
+    Attributes
+    ----------
+    gap : description of the gap that ended the loop, or None
+    bridged : number of gaps bridged
+
     """
 
     def __init__(self, make_navigator, step_ns, limit_ns, bridges_ns):

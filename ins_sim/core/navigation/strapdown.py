@@ -99,8 +99,12 @@ def level_attitude(lat, lon, q_ib, earth_angle):
     """
     Return q_nb from an inertial attitude and a position, floats or arrays.
 
-    lat, lon: rad; q_ib: inertial attitude; earth_angle: angle of the rotation from i to e, zero at
-    the start of the run, rad.
+    Parameters
+    ----------
+    lat, lon : position, rad
+    q_ib : inertial attitude
+    earth_angle : angle of the rotation from i to e, zero at the start of the run, rad
+
     """
     return quaternion.multiply(quaternion.conjugate(frames.level_frame(lat, lon + earth_angle)),
                                q_ib)

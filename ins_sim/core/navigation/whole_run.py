@@ -61,8 +61,18 @@ def judge_one(spin, t_s, solved, truth):
     """
     Return q_nb and the attitude, velocity and position errors, of one sample or of arrays.
 
-    spin: rotation rate of the Earth, rad/s; t_s: time since the start, s; solved: (lat, lon,
-    height, v_n, q_ib); truth: (lat, lon, height, v_n, q_nb).
+    Parameters
+    ----------
+    spin : rotation rate of the Earth, rad/s
+    t_s : time since the start, s
+    solved : (lat, lon, height, v_n, q_ib) of the solution, in rad, rad, m, m/s
+    truth : (lat, lon, height, v_n, q_nb), in the same units
+
+    Returns
+    -------
+    q_nb : attitude of the solution
+    delta, velocity, position : see ``errors.inertial_errors``; rad, m/s and m
+
     """
     lat, lon, height, v, q_ib = solved
     earth_angle = spin * t_s

@@ -18,8 +18,13 @@ class Comparison:
     """
     Solution minus reference, resolved in east, north, up: SampledTracks of (n, 3), or None.
 
-    name: name of the reference; position: m; velocity: m/s; attitude: rotation vector from the
-    reference to the solution, rad (Up: counter-clockwise).
+    Attributes
+    ----------
+    name : name of the reference
+    position : position error, m
+    velocity : velocity error, m/s
+    attitude : rotation vector from the reference to the solution, rad (Up: counter-clockwise)
+
     """
 
     name: str

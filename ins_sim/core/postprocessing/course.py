@@ -91,8 +91,12 @@ def find_course(turning, displacements, start_ns, distance_m, search_s):
     """
     Return the heading at the start, rad, and how it was found; or None and the reason.
 
-    turning: ``navigated_headings`` from heading zero; displacements: Reference.displacements; the
-    other arguments: see CourseSearch.
+    Parameters
+    ----------
+    turning : ``navigated_headings`` from heading zero
+    displacements : result of ``Reference.displacements``; None if there are none
+    start_ns, distance_m, search_s : see CourseSearch
+
     """
     if displacements is None:
         return None, 'contains neither a position nor a velocity to find the course from'

@@ -23,9 +23,15 @@ class InitialState:
     """
     The first sample, the state at that sample, and how they were found.
 
-    index: of the sample in the record; state: (lat, lon, height, v_n, q_nb); bias (3,): gyro bias
-    to subtract, rad/s, or None; still: Standstill or None; notes: sentences; figures: {name:
-    value}.
+    Attributes
+    ----------
+    index : index of the sample in the record
+    state : (lat, lon, height, v_n, q_nb), in rad, rad, m, m/s
+    bias : (3,) gyro bias to subtract, rad/s, or None
+    still : Standstill, or None
+    notes : list of sentences
+    figures : {name: value}
+
     """
 
     index: int

@@ -28,9 +28,14 @@ class NavigationResult:
     """
     The result of a navigation.
 
-    states: NavStates of each segment; references: what the solution was compared with;
-    comparisons: one for each reference; notes: sentences on what was found and done; figures: the
-    same as numbers, {name: value}.
+    Attributes
+    ----------
+    states : NavStates of each segment
+    references : what the solution was compared with, a list of References
+    comparisons : a Comparison for each reference
+    notes : sentences on what was found and done
+    figures : the same as numbers, {name: value}
+
     """
 
     states: list

@@ -55,8 +55,13 @@ class Reference:
     """
     A reference in n; each track may be None.
 
-    name; position: SampledTrack of lat, lon (rad, unwrapped), height (m); velocity: SampledTrack
-    of v_n, m/s; attitude: SampledTrack of q_nb with continuous signs; each may be None.
+    Attributes
+    ----------
+    name : name of the reference
+    position : SampledTrack of lat, lon (rad, unwrapped) and height (m)
+    velocity : SampledTrack of v_n, m/s
+    attitude : SampledTrack of q_nb with continuous signs
+
     """
 
     name: str

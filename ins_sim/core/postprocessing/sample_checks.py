@@ -16,8 +16,16 @@ def checked_samples(imu, stamps, zero_readings):
     """
     Return a RecordedImu without invalid readings and with the desired stamps, and notes.
 
-    imu: RecordedImu; stamps: StampSettings; zero_readings: 'refuse', 'fill' or 'keep'. Raises
-    ValueError if forces and rates are zero in turns and zero_readings is 'refuse'.
+    Parameters
+    ----------
+    imu : RecordedImu
+    stamps : StampSettings
+    zero_readings : 'refuse', 'fill' or 'keep'
+
+    Raises
+    ------
+    ValueError : if forces and rates are zero in turns and zero_readings is 'refuse'
+
     """
     imu, notes = stamped_samples(imu, stamps)
     imu = _without_spikes(imu, notes)

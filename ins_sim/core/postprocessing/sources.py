@@ -11,10 +11,17 @@ class Sources:
     """
     Recorded data.
 
-    name; imu: RecordedImu in the sensor frame; frame: name of that frame; reference: Reference or
-    None; odometry: OdometryReference or None; transforms: {(parent, child): q} from /tf_static;
-    notes: sentences on findings while reading; without_position: why the reference has no
-    position.
+    Attributes
+    ----------
+    name : name of the recorded data
+    imu : RecordedImu in the sensor frame
+    frame : name of that frame
+    reference : Reference or None
+    odometry : OdometryReference or None
+    transforms : {(parent, child): q} from /tf_static, q maps child to parent; or None
+    notes : sentences on findings while reading
+    without_position : why the reference has no position
+
     """
 
     name: str

@@ -64,9 +64,14 @@ class StillWindow(NamedTuple):
     """
     A window: samples first to last (excluded) of a record, of a fixed duration.
 
-    middle_ns: its middle; full: whether most of its samples are present; force, rate (3,): means;
-    force_sd, rate_sd: standard deviations, averaged over the axes; moving: whether a reference
-    that measures velocity moves.
+    Attributes
+    ----------
+    middle_ns : its middle, ns
+    full : whether most of its samples are present
+    force, rate : (3,) means, m/s^2 and rad/s
+    force_sd, rate_sd : standard deviations, averaged over the axes, m/s^2 and rad/s
+    moving : whether a reference that measures velocity moves
+
     """
 
     first: int
@@ -122,7 +127,7 @@ class WindowMoments:
         return np.add.reduceat(off, start) / size, first, counts[:, None]
 
     def each(self, moving):
-        """Yield the StillWindows; moving (n,): whether a reference moves at each sample."""
+        """Yield the n StillWindows; moving (n,): whether a reference moves in each of them."""
         for values in zip(self.first.tolist(), self.last.tolist(), self.middle_ns.tolist(),
                           self.full.tolist(), self.force, self.rate, self.force_sd.tolist(),
                           self.rate_sd.tolist(), moving.tolist()):

@@ -105,10 +105,17 @@ def advance_through(state, h, count, omega_in, f_n, force, turn, pull, out):
 
 def advance_errors(y, omega_in, f_n, force, turn, pull, h):
     """
-    Advance the slow state by one step of h seconds with RK4.
+    Advance the slow state by one step with RK4; return it.
 
-    y: gamma (3), p_E, p_N, s_E, s_N.  The others are means over the step: omega_in (3), f_n (3);
-    force: horizontal force error; turn: rotation of beta (3); pull: factors of p_E and p_N.
+    Parameters
+    ----------
+    y : gamma (3), p_E, p_N, s_E, s_N, in rad, m and m/s
+    omega_in, f_n : (3,) means over the step, rad/s and m/s^2
+    force : (2,) mean horizontal force error, east and north, m/s^2
+    turn : (3,) mean rotation of beta, rad/s
+    pull : (2,) mean factors of p_E and p_N, 1/s^2
+    h : length of the step, s
+
     """
     row = (*omega_in, *f_n, *force, *turn, *pull)
     k1 = _rate(y, row)

@@ -16,10 +16,15 @@ class AidedResult:
     """
     One aided run: truth, solution and errors at the output instants.
 
-    judged: a JudgedFix for every fix, in the order of arrival; faults: a sentence for each fault;
-    velocity_fixes, gnss_fixes: the reports of the instruments, if ``simulate_aided`` made them;
-    notes: results of ``note`` at each output instant, or None; diverged: whether a solution has
-    diverged.
+    Attributes
+    ----------
+    truth, states, errors : Truth, NavStates and AidedErrors at these instants
+    judged : a JudgedFix for every fix, in the order of arrival
+    faults : a sentence for each fault
+    velocity_fixes, gnss_fixes : the reports of the instruments, if ``simulate_aided`` made them
+    notes : results of ``note`` at each output instant, or None
+    diverged : whether a solution has diverged
+
     """
 
     truth: Truth

@@ -30,8 +30,12 @@ class StartSigmas(NamedTuple):
     """
     Standard deviations at the start.
 
-    position, velocity: of each axis, m and m/s; tilt, azimuth: rad; gyro_bias: of each axis,
-    rad/s, or None to use the settings.
+    Attributes
+    ----------
+    position, velocity : of each axis, m and m/s
+    tilt, azimuth : of each tilt and of the azimuth, rad
+    gyro_bias : of each axis, rad/s, or None to use the settings
+
     """
 
     position: float
@@ -51,8 +55,17 @@ def free_covariance(settings, show=None, start=None, dt_s=None):
     """
     Return the FreeCovariance of StrapdownSettings, from initial errors and instrument errors.
 
-    show: see FreeCovariance; start: StartSigmas, by default from the settings; dt_s: sampling
-    period, by default from rate_hz.  Raises ValueError if the instrument parameters are invalid.
+    Parameters
+    ----------
+    settings : StrapdownSettings
+    show : see FreeCovariance
+    start : StartSigmas, by default from the settings
+    dt_s : sampling period, s, by default from rate_hz
+
+    Raises
+    ------
+    ValueError : if the instrument parameters are invalid
+
     """
     initial, channel = settings.initial, settings.vertical.channel
     gyro, accelerometer = sigmas_of(settings)
@@ -99,9 +112,14 @@ class PublishedCovariance(NamedTuple):
 
     All include the square of the error that is the same in every run.
 
-    pose: (36) of position (m) and attitude (rad) about the axes of map, row by row; velocity: (9)
-    of the velocity that is published in b, resolved in n; rate: (9) of the angular velocity in b;
-    place: (9) of the position in east, north, up.
+    Attributes
+    ----------
+    t_ns : instant from which it is valid, ns
+    pose : (36,) covariance of position (m) and attitude (rad) about the axes of map, row by row
+    velocity : (9,) covariance of the velocity that is published in b, resolved in n, (m/s)^2
+    rate : (9,) covariance of the angular velocity in b, (rad/s)^2
+    place : (9,) covariance of the position in east, north, up, m^2
+
     """
 
     t_ns: int

@@ -22,9 +22,14 @@ class GuidedResult:
     """
     History of the steering at the control instants.
 
-    estimates: what the autopilot received; states: true state of the vehicle; notes: a sentence
-    for each kind of event; counts: pairs of the reason why the autopilot did not steer, or
-    'limited', and the number of such control instants.
+    Attributes
+    ----------
+    estimates : what the autopilot received
+    states : true state of the vehicle
+    notes : a sentence for each kind of event
+    counts : pairs of the reason why the autopilot did not steer, or 'limited', and the number of
+        such control instants
+
     """
 
     estimates: SteeringEstimates

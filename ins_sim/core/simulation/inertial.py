@@ -27,8 +27,13 @@ class SimulationResult:
     """
     One offline run: truth, solution and errors at the output instants.
 
-    imu: all readings; twin: the errors of the same run with all delays zero, or None; faults: a
-    sentence for each gap at which the strapdown started anew.
+    Attributes
+    ----------
+    truth, states, errors : Truth, NavStates and NavErrors at these instants
+    imu : all readings
+    twin : the errors of the same run with all delays zero, or None
+    faults : a sentence for each gap at which the strapdown started anew
+
     """
 
     truth: Truth

@@ -13,8 +13,13 @@ class AidingSource:
     """
     Messages of velocity_meter, gnss and aided_navigator, by spans of motion time.
 
-    settings: AidedSimulationSettings; flown: AidedResult of ``simulate_aided``; omega (n, 3): gyro
-    readings at the instants of the result; epoch_ns: stamp of motion time zero.
+    Parameters
+    ----------
+    settings : AidedSimulationSettings
+    flown : AidedResult of ``simulate_aided``
+    omega : (n, 3) gyro readings at the instants of the result, rad/s
+    epoch_ns : stamp of motion time zero, ns
+
     """
 
     def __init__(self, settings, flown, omega, epoch_ns):

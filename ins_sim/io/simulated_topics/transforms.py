@@ -30,9 +30,14 @@ class SimulatedTransforms:
         """
         Return {Topic: (stamps_ns (n,), messages (n,))} of a window.
 
-        stamped: {Topic: (stamps_ns, values)} of the other topics of the window; is_first: whether
-        the window begins the run: the fixed transforms are then included, with its first stamp.
         Transforms of the same instant are in one message.
+
+        Parameters
+        ----------
+        stamped : {Topic: (stamps_ns, values)} of the other topics of the window
+        is_first : whether the window begins the run: the fixed transforms are then included, with
+            its first stamp
+
         """
         first_ns = int(stamped[topics.TRUTH_ODOMETRY][0][0])
         fixed = [(first_ns, (parent, child), pose)

@@ -33,9 +33,13 @@ class Responses(NamedTuple):
     """
     Responses at the ends of n intervals.
 
-    transition (9, 9, n): response to the errors at the start; constants: for each triad
-    (9, 9, n), see ``TimeLanes.by_error``; fixed (9, f, n): response to errors that are the same in
-    every run; noise: a TriadNoise for each triad.
+    Attributes
+    ----------
+    transition : (9, 9, n) response to the errors at the start
+    constants : for each triad (9, 9, n), see ``TimeLanes.by_error``
+    fixed : (9, f, n) response to the f errors that are the same in every run
+    noise : a TriadNoise for each triad
+
     """
 
     transition: np.ndarray
