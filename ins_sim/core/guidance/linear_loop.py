@@ -112,8 +112,6 @@ def limits(loop, aiding):
     ----------
     loop : LateralLoop
     aiding : Aiding
-
-    Frequencies are those seen at the corrections: at most pi over the time between them.
     """
     response = _Response(_step(loop, aiding), aiding.cycles // aiding.step)
     step_s, n = aiding.step * loop.period_s, aiding.cycles // aiding.step

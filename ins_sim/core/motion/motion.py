@@ -31,7 +31,6 @@ class Motion:
     ----------
     pose : callable
         Maps the Taylor series of time, in s, to four values: latitude and longitude (rad) and
-        Maps the Taylor series of time, in s, to four values: latitude and longitude (rad) and
         height above the ellipsoid (m), each a Series, and q_nb, a tuple of four Series.
         Functions of a Series are in ``core.numerics.taylor``.
     order : int
