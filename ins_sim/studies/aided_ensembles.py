@@ -55,8 +55,12 @@ class AidedEnsembleResult:
     """
     Statistics of many runs of the aided chain.
 
-    errors: EnsembleResult of the aided solution, whose attitude error is that of q_nb, each in its
-    own n; consistency: Consistency; refused: pairs of an excluded run and the reason.
+    Attributes
+    ----------
+    errors : EnsembleResult of the aided solution; the attitude error is that of q_nb, where
+        solution and truth each refer to their own n
+    consistency : Consistency of the runs
+    refused : pairs (excluded run, reason)
     """
 
     errors: EnsembleResult

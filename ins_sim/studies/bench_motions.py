@@ -74,8 +74,12 @@ def foresee_case(case, settings, white, duration_s):
     """
     Return the ForeseenDelays of a BenchCase.
 
-    settings: SimulationSettings, of which position, rate and start are used; white: angle random
-    walk (3,), rad/sqrt(s); duration_s: length of all parts together, s.
+    Parameters
+    ----------
+    case : BenchCase
+    settings : SimulationSettings; only position, rate and start are used
+    white : (3,) angle random walk, rad/sqrt(s)
+    duration_s : length of all parts together, s
     """
     generator, part_s = settings.motion_generator, duration_s / len(case.parts)
     records = [planned_record(
@@ -105,10 +109,19 @@ def direction_map(single_sigma, azimuth_deg, elevation_deg):
     """
     Return the largest sigma of the three delays for each direction of the rocking axis.
 
-    single_sigma: sigma of a channel that is rocked about its own axis, s; azimuth_deg (n,):
-    direction of the axis in the body, from forward to the left; elevation_deg (m,): upwards. The
-    result is (m, n), s. A channel rotates by the component of the rocking along its axis, and
-    sigma is inversely proportional to it.
+    A channel rotates by the component of the rocking along its axis, and sigma is inversely
+    proportional to it.
+
+    Parameters
+    ----------
+    single_sigma : sigma of a channel that is rocked about its own axis, s
+    azimuth_deg : (n,) direction of the rocking axis in the body, from forward to the left, deg
+    elevation_deg : (m,) direction of the rocking axis in the body, upwards, deg
+
+    Returns
+    -------
+    (m, n) array
+        Largest sigma, s.
     """
     azimuth, elevation = np.radians(azimuth_deg), np.radians(elevation_deg)[:, None]
     level = np.cos(elevation)

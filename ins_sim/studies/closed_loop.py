@@ -30,8 +30,12 @@ class Published:
     """
     Expected results of a case; None if not stated.
 
-    beta_deg: half the range of the sideslip over the last 30 %, 0 for less than QUIET_DEG;
-    frequency: rad/s; swing_m: half the range of z; end_m: z at the end.
+    Attributes
+    ----------
+    beta_deg : half the range of the sideslip over the last 30 %, deg; 0 for less than QUIET_DEG
+    frequency : frequency of the oscillation, rad/s
+    swing_m : half the range of z, m
+    end_m : z at the end, m
     """
 
     beta_deg: float
@@ -45,9 +49,17 @@ class LoopCase:
     """
     A flight of the study.
 
-    k_z: lateral scale factor error of the meter; cycles: N; gain: K_v, 1/s, for sliding windows,
-    otherwise the gain of the filter; slides: whether a window ends every cycle; offset_m: z at the
-    start; engage_s: time at which the autopilot is engaged.
+    Attributes
+    ----------
+    k_z : lateral scale factor error of the meter
+    filter : name of the filter of the navigator
+    cycles : N, number of cycles of a window
+    gain : K_v, 1/s, for sliding windows, otherwise the gain of the filter
+    slides : whether a window ends every cycle
+    offset_m : z at the start, m
+    engage_s : time at which the autopilot is engaged, s
+    duration_s : length of the flight, s
+    published : Published results, or None
     """
 
     k_z: float

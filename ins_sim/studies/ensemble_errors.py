@@ -19,11 +19,18 @@ class EnsembleErrors:
     """
     The errors of an EnsembleResult at its m instants, solution minus truth, East, North, Up.
 
-    t_ns (m,); count (m,): number of runs that have not diverged; mean, sigma, rms: {name of a
-    quantity: (m, 3)}, attitude rad, velocity m/s, position m; percentiles: (p, m, 3) each, for
-    PERCENTS; horizontal_rms (m,) and horizontal_percentiles (p, m): of the horizontal magnitude;
-    cep: {percent: (m,)} radii about the true position that contain this fraction of the runs, from
-    mean and covariance, m.
+    In the dicts by quantity, attitude is in rad, velocity in m/s, position in m.
+
+    Attributes
+    ----------
+    t_ns : (m,) instants, ns
+    count : (m,) number of runs that have not diverged
+    mean, sigma, rms : {name of a quantity: (m, 3)}
+    percentiles : {name of a quantity: (p, m, 3)} for PERCENTS
+    horizontal_rms : {name of a quantity: (m,)} rms of the horizontal magnitude
+    horizontal_percentiles : {name of a quantity: (p, m)} of the horizontal magnitude
+    cep : {percent: (m,)} radii about the true position that contain this fraction of the runs,
+        from mean and covariance, m
     """
 
     t_ns: np.ndarray

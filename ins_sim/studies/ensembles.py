@@ -26,9 +26,17 @@ class EnsemblePlan:
     """
     Definition of an ensemble: runs of SimulationSettings, and the instants of the statistics.
 
-    settings: their run is the first one; runs: their number; instants: number of instants, evenly
-    from the start of the strapdown to the end, both included. Raises ValueError for invalid
-    numbers.
+    Attributes
+    ----------
+    settings : SimulationSettings; their run is the first one
+    runs : number of runs
+    instants : number of instants, evenly spaced from the start of the strapdown to the end, both
+        included
+
+    Raises
+    ------
+    ValueError
+        For invalid numbers.
     """
 
     settings: Any
@@ -109,8 +117,20 @@ def fly_ensemble(plan, read_motion, executor, store=None, progress=None):
     """
     Run the ensemble of an EnsemblePlan and return the EnsembleResult.
 
-    The bits of the result do not depend on the executor. read_motion: see EnsembleWork; executor,
-    store, progress: see ``run_blocks``. Raises ValueError as the stages do.
+    The bits of the result do not depend on the executor.
+
+    Parameters
+    ----------
+    plan : EnsemblePlan
+    read_motion : callable
+        See EnsembleWork.
+    executor, store, progress
+        See ``run_blocks``.
+
+    Raises
+    ------
+    ValueError
+        As the stages do.
     """
     work = EnsembleWork(plan, read_motion)
     return joined(of_arrays(arrays) for _, arrays in run_blocks(

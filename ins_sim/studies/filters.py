@@ -35,11 +35,20 @@ class FilterFlight:
     """
     One filter on one flight, at instants t_s (n,) since the start.
 
-    error, sigma (n, 3): position East, North, Up and its standard deviation by the filter (NaN if
-    unknown), m; azimuth, azimuth_sigma (n,) rad; estimates (n, 3): mu, kx, kz; nees, freedom: NEES
-    and its degrees of freedom, (n, core.aiding.consistency.BLOCKS); nis, nis_t_s (k,): NIS and
-    instants of the processed fixes of the velocity meter; refused: number of rejected fixes, and
-    the last reason.
+    Attributes
+    ----------
+    t_s : (n,) time since the start, s
+    error : (n, 3) position error, East, North, Up, m
+    sigma : (n, 3) its standard deviation by the filter, m; NaN if unknown
+    azimuth : (n,) azimuth error, rad
+    azimuth_sigma : (n,) its standard deviation by the filter, rad; NaN if unknown
+    estimates : (n, 3) mounting error mu (rad), kx and kz of the velocity meter
+    nees : (n, core.aiding.consistency.BLOCKS) NEES
+    freedom : (n, core.aiding.consistency.BLOCKS) degrees of freedom of the NEES
+    nis : (k,) NIS of the processed fixes of the velocity meter
+    nis_t_s : (k,) instants of these fixes, time since the start, s
+    refused : number of rejected fixes of the velocity meter
+    reason : reason of the last rejection, or ''
     """
 
     t_s: np.ndarray

@@ -21,8 +21,13 @@ class OrientationResult:
     """
     Result of one algorithm.
 
-    drift (3,): of the attitude, rad/s; position (3,): largest errors East, North, Up, m; apart:
-    largest angle between its attitude and that of the quaternion, rad; step_s: CPU time of a step.
+    Attributes
+    ----------
+    kind : name of the algorithm, one of ``integration.KINDS``
+    drift : (3,) drift of the attitude, East, North, Up, rad/s
+    position : (3,) largest position errors, East, North, Up, m
+    apart : largest angle between its attitude and that of the quaternion, rad
+    step_s : CPU time of a step, s
     """
 
     kind: str
@@ -34,7 +39,7 @@ class OrientationResult:
 
 def compare_orientations(settings, motion, progress=None):
     """
-    Return an OrientationResult for each of orientation.KINDS, the quaternion first.
+    Return an OrientationResult for each of ``integration.KINDS``, the quaternion first.
 
     Parameters
     ----------

@@ -21,8 +21,12 @@ class MapPanel:
     """
     A filter of the map.
 
-    kind: see ``linear_loop.Aiding``; cycles: N; least, most: range of the gains, K_v in 1/s for
-    sliding windows.
+    Attributes
+    ----------
+    kind : see ``linear_loop.Aiding``
+    cycles : N, number of cycles of a window
+    slides : whether a window ends every cycle
+    least, most : range of the gains, K_v in 1/s for sliding windows
     """
 
     kind: str

@@ -31,8 +31,11 @@ class Cell:
     """
     One cell of a table.
 
-    value: rad/s of the base or Hz of the rotor; poisson_deg, euler_vector_deg: amplitude by each
-    algorithm; paper_deg: printed value, or None.
+    Attributes
+    ----------
+    value : angular frequency of the base, rad/s, or speed of the rotor, Hz
+    poisson_deg, euler_vector_deg : amplitude by each algorithm, deg
+    paper_deg : printed value, deg, or None
     """
 
     value: float
@@ -54,8 +57,14 @@ def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
     """
     Return the amplitudes of roll, deg, computed by Poisson's equation and by the Euler vector.
 
-    pair: GyroPair at rest, with its step and method; amplitude_deg, rate_rad_s: of the base. The
-    record is 20 s or three periods, whichever is longer.
+    The record is 20 s or three periods, whichever is longer.
+
+    Parameters
+    ----------
+    pair : GyroPair at rest
+    amplitude_deg : amplitude of the base, deg
+    rate_rad_s : angular frequency of the base, rad/s
+    step_s, method : length of a step, s, and method of the pair
     """
     period = 2.0 * math.pi / rate_rad_s
     steps = math.ceil(max(20.0, 3.0 * period) / step_s)
@@ -72,10 +81,20 @@ def rocking_amplitudes(pair, amplitude_deg, rate_rad_s, step_s, method='rk4'):
 
 def rock(steps, first, top, rate_rad_s, step_s, turned, gains_1, gains_2, stages, x_1, x_2, out):
     """
-    Advance a rocking base; out: roll by Poisson and by the Euler vector from step ``first`` on.
+    Advance a rocking base by a number of steps and write the computed roll.
 
-    top: amplitude of the rate, rad/s, with the angular frequency rate_rad_s; turned: arrangement
-    of the gyros; gains_1 to x_2: constants and states of both rotors (``rotor_step``).
+    Parameters
+    ----------
+    steps : number of steps
+    first : number of the first step whose roll is written
+    top : amplitude of the rate of the base, rad/s
+    rate_rad_s : angular frequency of the base, rad/s
+    step_s : length of a step, s
+    turned : whether the arrangement of the gyros is turned
+    gains_1, gains_2 : constants of both rotors, see ``rotor_step``
+    stages : constants of both for ``rotor_stages``, or None to use the mean rate of a step
+    x_1, x_2 : states of both rotors, see ``rotor_step``
+    out : (steps - first, 2), written by flat index: roll by Poisson and by the Euler vector, rad
     """
     c, theta, u_end = dcm_of((0.0, 0.0, 0.0, 1.0)), (0.0, 0.0, 0.0), (top, 0.0, 0.0)
     for k in range(steps):

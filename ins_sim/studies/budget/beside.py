@@ -25,9 +25,14 @@ class BesideRuns:
     """
     Errors of an ensemble that is compared with a budget, at m instants.
 
-    runs: their number; diverged: numbers of the excluded runs; t_s (m,): time since the start of
-    the navigation, s; count (m,): number of runs; mean (m, 9), covariance (m, 9, 9): attitude,
-    velocity and position, East, North, Up.
+    Attributes
+    ----------
+    runs : number of runs
+    diverged : numbers of the excluded runs
+    t_s : (m,) time since the start of the navigation, s
+    count : (m,) number of runs at each instant
+    mean : (m, 9) mean of attitude, velocity and position error, East, North, Up, rad, m/s, m
+    covariance : (m, 9, 9) covariance of these errors
     """
 
     runs: int
@@ -43,9 +48,14 @@ class ComparedQuantity:
     """
     One quantity of an ensemble compared with the budget, at n instants.
 
-    name: one of COMPARED; t_s (n,); numbers (n,): indices of the instants in the budget; budget,
-    ensemble (n,): rms, or standard deviation for a single axis; low, high (n,): interval that
-    contains their ratio for 99.9 % of ensembles; linear (n,): whether linear theory applies.
+    Attributes
+    ----------
+    name : one of COMPARED
+    t_s : (n,) time since the start of the navigation, s
+    numbers : (n,) indices of the instants in the budget
+    budget, ensemble : (n,) rms, or standard deviation for a single axis, in m, m/s or rad
+    low, high : (n,) interval that contains the ratio of ensemble to budget for 99.9 % of ensembles
+    linear : (n,) whether linear theory applies
     """
 
     name: str
@@ -110,9 +120,14 @@ def rms_scatter(covariance, mean, count):
     """
     Return the relative standard deviation of the rms of a vector over some runs, (n,).
 
-    covariance (n, a, a) and mean (n, a) of the vector; count: number of runs. The square of the
-    length has the variance 2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic Forms in Random
-    Variables", 1992).
+    The square of the length has the variance 2 tr(P P) + 4 m' P m (Mathai and Provost, "Quadratic
+    Forms in Random Variables", 1992).
+
+    Parameters
+    ----------
+    covariance : (n, a, a) covariance P of the vector
+    mean : (n, a) mean m of the vector
+    count : number of runs
     """
     square = np.trace(covariance, axis1=1, axis2=2) + np.square(mean).sum(axis=1)
     variance = (2.0 * np.square(covariance).sum(axis=(1, 2))

@@ -16,8 +16,12 @@ class Quantity:
     """
     One quantity of a budget.
 
-    name: as in a requirement; words: as in a title; axes: indices of its components among the nine
-    errors of a LinearBudget; unit: LENGTH, SPEED or ANGLE.
+    Attributes
+    ----------
+    name : name of the quantity in a requirement
+    words : name of the quantity in a title
+    axes : indices of its components among the nine errors of a LinearBudget
+    unit : LENGTH, SPEED or ANGLE
     """
 
     name: str
@@ -41,9 +45,13 @@ class Shares:
     """
     The square of one quantity, and the contributions of the sources.
 
-    random (sources, n): variances; mean (sources, n, axes): errors of the fixed sources; fixed
-    (sources, n): contribution of each of these to the square of their sum, which may be negative;
-    rms (n,): square root of the total.
+    Attributes
+    ----------
+    random : (sources, n) variances of the random sources
+    mean : (sources, n, axes) errors of the fixed sources
+    fixed : (sources, n) contribution of each fixed source to the square of their sum; it may be
+        negative
+    rms : (n,) square root of the total
     """
 
     random: np.ndarray

@@ -34,8 +34,13 @@ class Requirement:
     """
     A requirement on an error: a statistic of a quantity is at most a limit at a time.
 
-    text: as given; quantity: one of QUANTITIES; statistic: one of STATISTICS; limit: in SI; t_s:
-    time since the start of the navigation, s.
+    Attributes
+    ----------
+    text : the requirement as given
+    quantity : name of one of QUANTITIES
+    statistic : name of one of STATISTICS
+    limit : largest allowed value of the statistic, in SI units
+    t_s : time since the start of the navigation, s
     """
 
     text: str
@@ -50,8 +55,13 @@ class Improvement:
     """
     The required improvement of one source.
 
-    factor: for its error, or None if the others alone exceed the requirement; values: of the
-    parameter then, by axis; without: value of the requirement without this source, in SI.
+    Attributes
+    ----------
+    source : ErrorSource
+    factor : factor for its error, or None if the other sources alone exceed the requirement
+    values : values of the parameter with this factor, by axis, in its unit; None
+        without a factor, or if the parameter would have to be infinite
+    without : value of the requirement without this source, in SI units
     """
 
     source: ErrorSource
@@ -65,10 +75,16 @@ class RequirementAnswer:
     """
     The improvements that would meet a Requirement.
 
-    found: present value, in SI; met: whether it meets the requirement; alone: Improvements of
-    single sources, sufficient ones first, then in the order of the value without the source;
-    random: factor by which all random errors must shrink, None if the fixed ones alone exceed the
-    requirement or if it is met; everything: factor for all errors.
+    Attributes
+    ----------
+    requirement : Requirement
+    found : present value, in SI units
+    met : whether the present value meets the requirement
+    alone : Improvements of single sources, sufficient ones first, then in the order of the value
+        without the source
+    random : factor by which all random errors must shrink, or None if the fixed errors alone
+        exceed the requirement or if it is met
+    everything : factor by which all errors must shrink, or None if the requirement is met
     """
 
     requirement: Requirement

@@ -13,9 +13,14 @@ class Sensitivity:
     """
     The change of an error with one parameter, of all axes or of one.
 
-    axis: 'x', 'y', 'z', or '' for all; value: of the parameter, in its unit; alone: error due to
-    the source alone for a unit of the parameter (for a lag, at its bandwidth); slope: d rms / d
-    parameter; both in SI of the quantity divided by the unit of the parameter.
+    Attributes
+    ----------
+    source : ErrorSource of the parameter
+    axis : 'x', 'y', 'z', or '' for all
+    value : value of the parameter, in its unit
+    alone : error due to the source alone for a unit of the parameter (for a lag, at its
+        bandwidth), in the SI unit of the quantity divided by the unit of the parameter
+    slope : d rms / d parameter, in the same unit as alone
     """
 
     source: ErrorSource

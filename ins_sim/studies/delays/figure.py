@@ -61,8 +61,13 @@ class DelayFigure:
     """
     A figure to be drawn.
 
-    name: of its files; shows: DelayFigureSettings; simulation: SimulationSettings of its runs;
-    motion: a recorded one, or None if the settings define it; notes: messages about it.
+    Attributes
+    ----------
+    name : name of its files
+    shows : DelayFigureSettings
+    simulation : SimulationSettings of its runs
+    motion : recorded motion, or None if the settings define the motion
+    notes : messages about the figure
     """
 
     name: str

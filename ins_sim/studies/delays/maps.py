@@ -32,11 +32,20 @@ class RatesMap:
     """
     Mean horizontal drift of motion 2 over a time, rad/s.
 
-    span_s: averaging time; psi_rates (n,), gamma_rates (m,): middles of the cells, rad/s; largest
-    (m, n): largest drift in each cell; lines: numbers k of the resonance lines psi' = k gamma';
-    near_psi_rates, near_gamma_rates, near: a second map of the drift (not the largest one) near
-    the rates of the settings; detunings, across: drift over the detuning; half_width: detuning at
-    which the drift is half as large, rad/s, or None if it is not in the range.
+    Attributes
+    ----------
+    span_s : averaging time, s
+    psi_rates, gamma_rates : (n,) and (m,) middles of the cells, rad/s
+    largest : (m, n) largest drift in each cell, rad/s
+    lines : numbers k of the resonance lines psi' = k gamma'
+    near_psi_rates, near_gamma_rates : (p,) rates of a second map, near those of the settings,
+        rad/s
+    near : (p, p) drift (not the largest one) at these rates, rad/s; rows by gamma', columns by
+        psi'
+    detunings : (k,) detunings of psi' from the rate of the settings, rad/s
+    across : (k,) drift over the detuning, rad/s
+    half_width : detuning at which the drift is half as large, rad/s, or None if it is not in the
+        range
     """
 
     span_s: float
@@ -57,9 +66,13 @@ class RockingMap:
     """
     Mean drift of motion 1, rad/s.
 
-    azimuth_deg (n,), elevation_deg (m,): direction of the rocking axis in the body, from forward
-    to the left, and upwards; size (m, n): magnitude of the drift; psi_deg (k,), drift (k, 3):
-    East, North, Up, over psi for a level axis.
+    Attributes
+    ----------
+    azimuth_deg : (n,) direction of the rocking axis in the body, from forward to the left, deg
+    elevation_deg : (m,) direction of the rocking axis in the body, upwards, deg
+    size : (m, n) magnitude of the drift, rad/s
+    psi_deg : (k,) psi of a body that rocks about a level axis, deg
+    drift : (k, 3) drift over psi for this axis, East, North, Up, rad/s
     """
 
     azimuth_deg: np.ndarray

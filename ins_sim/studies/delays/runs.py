@@ -24,9 +24,11 @@ class ErrorFigures:
     """
     Summary of an error history.
 
-    drift (3,): least-squares slope of the inertial attitude error, East, North, Up, rad/s;
-    mean_drift (3,): its growth over the run divided by the time, rad/s; largest (3,): largest
-    |position error| East, North, Up, m.
+    Attributes
+    ----------
+    drift : (3,) least-squares slope of the inertial attitude error, East, North, Up, rad/s
+    mean_drift : (3,) growth of this error over the run divided by the time, rad/s
+    largest : (3,) largest |position error|, East, North, Up, m
     """
 
     drift: np.ndarray
@@ -39,9 +41,13 @@ class DelaySensitivity:
     """
     Error due to one second of delay of each gyro channel, by the linear theory.
 
-    position (n, 2, 3): East and North error, m/s, at the instants of the run, for the delays of x,
-    y, z; drift (3, 3): slope of the attitude error East, North, Up, 1/s^2, for the delays of x, y,
-    z; largest (2, 3): largest |position|, m/s.
+    The last axis of each array is the delayed channel, x, y, z.
+
+    Attributes
+    ----------
+    position : (n, 2, 3) position error East, North at the instants of the run, m/s
+    drift : (3, 3) slope of the attitude error, East, North, Up, 1/s^2
+    largest : (2, 3) largest |position error|, East, North, m/s
     """
 
     position: np.ndarray
@@ -54,12 +60,19 @@ class DelayRun:
     """
     One run with delays.
 
-    t_s (n,): at most MOST_INSTANTS instants since the start of the navigation; track (n, 3): true
-    latitude and longitude, rad, and height, m; angles (n, 2): computed minus true latitude and
-    longitude, rad; predicted_angles (n, 2); apart (n, 3): position error minus that of the twin,
-    East, North, Up, m; predicted (n, 3): the same by the linear theory; measured: ErrorFigures of
-    the run, with its position error minus that of the twin; twin, prediction: ErrorFigures of the
-    twin and of the theory; sensitivity: DelaySensitivity or None.
+    Attributes
+    ----------
+    settings : SimulationSettings of the run
+    t_s : (n,) at most MOST_INSTANTS instants since the start of the navigation, s
+    track : (n, 3) true latitude and longitude, rad, and height, m
+    angles : (n, 2) computed minus true latitude and longitude, rad
+    predicted_angles : (n, 2) the same by the linear theory, rad
+    apart : (n, 3) position error minus that of the twin, East, North, Up, m
+    predicted : (n, 3) the same by the linear theory, m
+    measured : ErrorFigures of the run, with its position error minus that of the twin
+    twin : ErrorFigures of the twin
+    prediction : ErrorFigures of the linear theory
+    sensitivity : DelaySensitivity or None
     """
 
     settings: SimulationSettings
