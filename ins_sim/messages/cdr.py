@@ -176,8 +176,8 @@ class Reader:
     """
     Reads messages of one type with strings of any length.
 
-    runs are slices (start, stop) of the doubles, each of which is returned as a tuple; by default
-    one tuple with all doubles.
+    runs: slices (start, stop) of the doubles; each slice is returned as a tuple. By default one
+    tuple contains all doubles.
     """
 
     def __init__(self, type_name, runs=None):

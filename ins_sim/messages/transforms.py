@@ -67,7 +67,7 @@ def pose_between(pose, other):
 
 
 def first_stamp(data):
-    """Return the stamp of the first transform of a TFMessage, ns; None if there is none."""
+    """Return the stamp of the first transform of a TFMessage, ns; None without a valid one."""
     try:
         (_, _, stamp_ns, _), *_ = read_transforms(data)
     except ValueError:

@@ -18,8 +18,8 @@ def simulate_each(settings, motion, runs, wanted_ns, initial=None):
     Return the EnsembleResult of runs simulated one after the other; see ``simulate_runs``.
 
     A run with jitter of the stamps, or with lost samples, has its own instants: the statistics use
-    its first solution at or after the wanted instant, or its last one if there is none. A guided
-    motion is steered by the solution of each run.
+    its first solution at or after the wanted instant, or its last one if the run ends earlier. A
+    guided motion is steered by the solution of each run.
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ class StabilityLimit(NamedTuple):
 
 class StabilityLimits(NamedTuple):
     """
-    The StabilityLimits nearest to zero, one of each sign; None if there is none of that sign.
+    The positive and the negative StabilityLimit nearest to zero; None for a sign without a limit.
 
     unstable: number of modes that grow at k_z = 0. Only if it is zero do the limits bound the
     stable range.

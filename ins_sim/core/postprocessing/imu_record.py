@@ -16,7 +16,7 @@ class RecordedImu(History):
     Samples as they were recorded, in the sensor frame s or in the body frame b.
 
     t_ns (n,) int64: stamps; omega (n, 3): rad/s; f (n, 3): specific force, m/s^2; q_ns (n, 4):
-    orientation from the messages, NaN where there is none.
+    orientation from the messages, NaN for messages without an orientation.
     """
 
     t_ns: np.ndarray

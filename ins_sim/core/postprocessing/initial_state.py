@@ -248,7 +248,7 @@ class _Search:
         return alignment.level_attitude(still.force, heading), False
 
     def _reference_heading(self, still, k, where, wanted, refused):
-        """Return a heading and the text of its source; ValueError if there is none."""
+        """Return a heading and the text of its source; raise ValueError if no source has one."""
         t_ns = int(self._imu.t_ns[k])
         if wanted != 'course' and self._reference is not None:
             q = self._reference.attitude_at(t_ns)

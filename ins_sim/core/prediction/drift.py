@@ -208,7 +208,7 @@ def two_axis_resonances(motion, tau):
     Return the resonances of motion 2 as (name, rate of psi, drift (3,)); empty for other motions.
 
     The resonance psi' = 2 gamma' is equation (19) of Bogdanov and Fomichev (2018), who do not
-    mention the other one, psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x,
+    mention the resonance psi' = -2 gamma' (docs/theory/prediction.md). tau (3,): delays of x,
     y, z, s; their tau1 is the delay of y, their tau3 that of z.
     """
     if motion.kind != 'two_axis':

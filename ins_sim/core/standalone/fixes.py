@@ -89,7 +89,7 @@ class FixTrack:
         """
         Return latitude (rad), longitude (rad) and height (m) at a stamp, or None.
 
-        near: whether to use the nearest fix within LONGEST_STEP_S if there is none on one side.
+        near: whether to use the nearest fix within LONGEST_STEP_S if one side has no fix.
         """
         track = self._track(t_ns)
         if track is None:

@@ -28,7 +28,7 @@ def rk4_amplification(z):
 
 def rk4_window(roots):
     """
-    Return the shortest and longest step, s, for which RK4 is stable, or None if there is none.
+    Return the shortest and longest step, s, for which RK4 is stable; None if no step is.
 
     The lower limit is 0 for a stable instrument. A slightly unstable one is damped by RK4 itself,
     by 1 - (w h)^6 / 144 per step, if the step h is long enough.
