@@ -14,7 +14,7 @@ from ins_sim.core.earth.great_circle import GreatCircleRoute
 from ins_sim.core.simulation.inertial import simulate
 from ins_sim.messages import topics, velocity_record
 from ins_sim.messages.convert import aided_fix_one, aided_odometry_one
-from support.live import Chain, Listener
+from support.live import Chain, Listener, warnings_of_loss
 import numpy as np
 import pytest
 from support.stream import DT, offline_fixes, SECOND, Stream
@@ -56,9 +56,7 @@ def lock_step(domain, folder, order, load=0, reset_ns=None):
         listener.poll_until(lambda: all(12 * SECOND in h for h in listener.heard.values()))
         texts = [chain.text(process) for process in started.values()]
         assert set(chain.end().values()) == {0}, texts
-        # If the machine stalls for a second, the navigator logs it.
-        warnings = [line for text in texts for line in text.splitlines()
-                    if 'WARN' in line and 'waiting for a fix of' not in line]
+        warnings = warnings_of_loss(texts)
         assert all('jumps back' in line for line in warnings), warnings
         assert len(warnings) == (0 if reset_ns is None else 5)
     finally:

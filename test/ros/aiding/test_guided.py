@@ -6,7 +6,7 @@ from ins_sim.core.earth.frames import MapFrame
 from ins_sim.messages import topics
 import numpy as np
 import pytest
-from support.live import Chain, Listener
+from support.live import Chain, Listener, warnings_of_loss
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live
@@ -41,7 +41,7 @@ def lock_step(domain, folder, order):
         listener.poll_until(lambda: last_ns in listener.heard[topics.AIDED_ODOMETRY.name])
         texts = [chain.text(process) for process in nodes.values()]
         assert set(chain.end().values()) == {0}, texts
-        warnings = [line for text in texts for line in text.splitlines() if 'WARN' in line]
+        warnings = warnings_of_loss(texts)
         assert not warnings, warnings
     finally:
         chain.end()
