@@ -2,7 +2,7 @@
 
 import math
 
-from support.aided_flights import circle, perfect_fixes, samples_of, straight
+from support.aided.flights import circle, perfect_fixes, samples_of, straight
 from ins_sim.core.aiding.navigator import AidedNavigator, METER
 from ins_sim.settings.aided_navigator import AidedNavigatorSettings
 from ins_sim.settings.catalogue import build

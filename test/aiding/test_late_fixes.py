@@ -3,7 +3,7 @@
 from dataclasses import replace
 import math
 
-from support.aided_flights import circle, perfect_fixes, samples_of, straight
+from support.aided.flights import circle, perfect_fixes, samples_of, straight
 from hypothesis import given, settings as hypothesis_settings, strategies as st
 from ins_sim.core.aiding import kalman
 from ins_sim.core.aiding.navigator import AidedNavigator, GNSS, METER

@@ -1,6 +1,6 @@
 """Fixes of instruments without errors are used, with the smallest sigma that is reported."""
 
-from support import aided_runs
+from support.aided import runs as aided_runs
 
 ZEROS = ('surrogate.sigma_x_m_s:=0.0', 'surrogate.sigma_z_m_s:=0.0', 'surrogate.slip_z_m_s:=0.0',
          'surrogate.bias_x_m_s:=0.0', 'errors.position_noise_m:=[0.0, 0.0, 0.0]',

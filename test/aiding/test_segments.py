@@ -12,7 +12,7 @@ from ins_sim.settings.aided_navigator import AidedNavigatorSettings, FilterEntry
 from ins_sim.settings.catalogue import build
 import numpy as np
 import pytest
-from support.aided_flights import circle, perfect_fixes, samples_of
+from support.aided.flights import circle, perfect_fixes, samples_of
 
 CYCLES, SECONDS = 50, 13
 MOTION = circle()

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from support.aided_flights import DT_NS, samples_of, straight
-from support.aided_streams import run_stream, scene
+from support.aided.flights import DT_NS, samples_of, straight
+from support.aided.streams import run_stream, scene
 import numpy as np
 import pytest
 

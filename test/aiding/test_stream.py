@@ -5,7 +5,7 @@ import numpy as np
 
 from ins_sim.core.aiding.navigator import GNSS, METER
 from ins_sim.core.aiding.live import AidedStream
-from support.aided_streams import mixed, push, run_stream, scene
+from support.aided.streams import mixed, push, run_stream, scene
 
 SECOND = 1_000_000_000
 

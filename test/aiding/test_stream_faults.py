@@ -12,7 +12,7 @@ from ins_sim.settings.catalogue import build
 from ins_sim.core.aiding.filters.base import FixOutcome, refused_fix
 from ins_sim.settings.by_node import AIDING
 from ins_sim.ros.process.aiding_health import AidingHealth
-from support.aided_streams import VALUES, chosen_settings, mixed, push, run_stream, scene
+from support.aided.streams import VALUES, chosen_settings, mixed, push, run_stream, scene
 
 SECOND = 1_000_000_000
 

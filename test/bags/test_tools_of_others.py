@@ -5,7 +5,7 @@ from ins_sim.io import simulated
 import numpy as np
 import pytest
 from support.bags import bag_tools
-from support.aided_runs import flown, settings
+from support.aided.runs import flown, settings
 
 # The linters judge drift only after 5 s.
 FLIGHT = ('duration_s:=12.0', 'window.cycles:=50', 'frames.prefix:=uav1', 'tf.source:=aided',

@@ -2,7 +2,7 @@
 
 import json
 
-from support.aided_runs import command, FLIGHT, flown, settings
+from support.aided.runs import command, FLIGHT, flown, settings
 from ins_sim import parameter_files
 from ins_sim.cli.main import main
 from ins_sim.core.aiding.navigator import GNSS, METER

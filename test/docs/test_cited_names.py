@@ -6,14 +6,14 @@ import re
 import ins_sim
 from ins_sim.cli.main import main
 import numpy as np
-import pytest
-from support.pages import PAGES
+from support.each import each
+from support.pages import page_id, PAGES
 from support.places import ROOT
 
 DOCUMENTS = [page for page in PAGES if page.name != 'README.md']
 
 
-@pytest.mark.parametrize('path', DOCUMENTS, ids=lambda p: p.stem)
+@each(DOCUMENTS, page_id)
 def test_names_in_the_documents_exist(path):
     """`core.module.name` and `ins_sim.module.name` can be imported."""
     for name in re.findall(r'`(?:ins_sim\.)?((?:core|messages|ros|report)\.(?!html`)[\w.]+)`',

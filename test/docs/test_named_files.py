@@ -2,8 +2,8 @@
 
 import re
 
-import pytest
-from support.pages import PAGES
+from support.each import each
+from support.pages import page_id, PAGES
 from support.places import ROOT
 
 # A path of the repository in backticks; with a star or capitals it is a pattern.
@@ -13,7 +13,7 @@ LINK = re.compile(r'\]\(([\w./-]+\.md)[)#]')
 GENERATED = ROOT / 'docs' / 'reference' / 'generated'
 
 
-@pytest.mark.parametrize('page', PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@each(PAGES, page_id)
 def test_named_files_exist(page):
     """Paths in backticks, relative to the repository, and links, relative to the page, exist."""
     text = page.read_text(encoding='utf-8')

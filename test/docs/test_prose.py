@@ -3,7 +3,7 @@
 from pathlib import Path
 import re
 
-import pytest
+from support.each import each
 from support.pages import anchors, page_id, PAGES, README, split
 from support.places import ROOT
 
@@ -33,7 +33,7 @@ def test_the_readme_begins_with_make_demo_and_make_test():
     assert re.search(r'`make test` \(about [\w ]+ minutes[\w ]*\)', ' '.join(TEXT.split()))
 
 
-@pytest.mark.parametrize('page', PAGES, ids=page_id)
+@each(PAGES, page_id)
 def test_links_lead_somewhere(page):
     """Files, folders, pictures and anchors to which a page links exist."""
     for is_picture, target in links(page.read_text(encoding='utf-8')):
@@ -49,7 +49,7 @@ def test_links_lead_somewhere(page):
             assert anchor in anchors(path.read_text(encoding='utf-8')), target
 
 
-@pytest.mark.parametrize('page', PAGES, ids=page_id)
+@each(PAGES, page_id)
 def test_lines_of_prose_can_be_read_in_an_editor(page):
     """Lines have at most 100 characters, except tables, code, formulas and link targets."""
     _, prose = split(page.read_text(encoding='utf-8'))

@@ -9,6 +9,7 @@ from ins_sim.messages import topics
 from ins_sim.settings.by_node import ALL_NODES
 from ins_sim.settings.catalogue import flatten, is_of_ros
 import pytest
+from support.each import each
 from support.pages import commands, page_id, PAGES, split
 from support.places import ROOT
 
@@ -102,7 +103,7 @@ def check(line):
     return True
 
 
-@pytest.mark.parametrize('page', PAGES, ids=page_id)
+@each(PAGES, page_id)
 def test_commands_of_ros_and_make(page):
     """Executables, launch files, arguments, parameters, files, topics and targets exist."""
     for line in lines_of(page):

@@ -2,7 +2,7 @@
 
 import re
 
-from support.aided_runs import command, flown, settings
+from support.aided.runs import command, flown, settings
 from ins_sim.io import simulated
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.bags.bag_writer import BagWriter

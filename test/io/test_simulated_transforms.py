@@ -10,7 +10,7 @@ from ins_sim.messages.transforms import read_transforms
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from support.aided_runs import flown, settings
+from support.aided.runs import flown, settings
 
 EPOCH_NS = 1735689600 * 10**9
 LENGTH_S = 20

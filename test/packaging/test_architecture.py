@@ -4,7 +4,7 @@ import ast
 import re
 import sys
 
-import pytest
+from support.each import each
 from support.places import ROOT
 
 PACKAGE = ROOT / 'ins_sim'
@@ -134,7 +134,7 @@ def tops(names):
     return {name.partition('.')[0] for name in names}
 
 
-@pytest.mark.parametrize('name', FILES)
+@each(FILES)
 def test_imports_are_those_of_the_table(name):
     """A module imports only its own package and those listed in MAY_IMPORT."""
     room = room_of(name)
@@ -148,7 +148,7 @@ def test_imports_are_those_of_the_table(name):
                         or known.removeprefix('ins_sim.') in allowed), other
 
 
-@pytest.mark.parametrize('name', inside('core'))
+@each(inside('core'))
 def test_core_imports_only_numerics(name):
     """core imports the standard library, NumPy, SciPy, itself and, inside functions, Numba."""
     standard = set(sys.stdlib_module_names) - (NOT_IN_CORE if name not in COMPILES else set())
@@ -157,7 +157,7 @@ def test_core_imports_only_numerics(name):
     assert not tops(EAGER[name]) & LAZY, 'import numba inside the function that needs it'
 
 
-@pytest.mark.parametrize('name', inside('core'))
+@each(inside('core'))
 def test_core_opens_no_file(name):
     """core opens no file; files are read and written by ins_sim.io and ins_sim.bags."""
     called = {node.func.id for node in ast.walk(TREES[name])
@@ -167,7 +167,7 @@ def test_core_opens_no_file(name):
     assert name == COMPILES[0] or not tops(IMPORTS[name]) & files
 
 
-@pytest.mark.parametrize('name', inside('core'))
+@each(inside('core'))
 def test_core_reads_no_setting_of_a_node(name):
     """core reads no node setting (depths of queues, pacing, epoch); nodes pass what is needed."""
     read = {node.attr for node in ast.walk(TREES[name])
@@ -175,26 +175,25 @@ def test_core_reads_no_setting_of_a_node(name):
     assert not read & {'topics', 'pacing', 'time'}
 
 
-@pytest.mark.parametrize('name', inside('settings'))
+@each(inside('settings'))
 def test_settings_need_only_python(name):
     """Settings are read without NumPy."""
     assert tops(IMPORTS[name]) <= set(sys.stdlib_module_names) | {'ins_sim'}
 
 
-@pytest.mark.parametrize('name', inside('messages'))
+@each(inside('messages'))
 def test_messages_need_only_numpy(name):
     """Messages are packed without ROS."""
     assert tops(IMPORTS[name]) <= set(sys.stdlib_module_names) | {'numpy', 'ins_sim'}
 
 
-@pytest.mark.parametrize('name', [name for name in FILES if name not in inside('ros')])
+@each(name for name in FILES if name not in inside('ros'))
 def test_only_the_room_ros_imports_rclpy_at_once(name):
     """All packages except ins_sim.ros can be imported without ROS."""
     assert 'rclpy' not in tops(EAGER[name])
 
 
-@pytest.mark.parametrize('name', [name for name, path in FILES.items()
-                                  if path.name == '__init__.py' and name != 'ins_sim'])
+@each(name for name, path in FILES.items() if path.name == '__init__.py' and name != 'ins_sim')
 def test_a_room_holds_only_its_docstring(name):
     """The file __init__ of a package states what is in it, and imports nothing."""
     assert ast.get_docstring(TREES[name])
@@ -211,7 +210,7 @@ def test_no_class_name_twice():
     assert {cls: names for cls, names in found.items() if len(names) > 1} == {}
 
 
-@pytest.mark.parametrize('name', FILES)
+@each(FILES)
 def test_imports_are_relative_inside_a_room_and_absolute_across(name):
     """Imports across packages are absolute, and those within one package are relative."""
     for node in ast.walk(TREES[name]):
@@ -224,8 +223,7 @@ def test_imports_are_relative_inside_a_room_and_absolute_across(name):
                 assert same == bool(node.level), ast.unparse(node)
 
 
-@pytest.mark.parametrize('folder', sorted({path.parent for path in FILES.values()}),
-                         ids=lambda path: str(path.relative_to(ROOT)))
+@each(sorted({path.parent for path in FILES.values()}))
 def test_a_folder_is_a_table_of_contents(folder):
     """A folder has at most 24 entries, or 16 in the packages of core."""
     entries = [path for path in folder.iterdir()
@@ -244,7 +242,7 @@ def test_there_is_no_import_cycle():
         graph = {name: needs for name, needs in graph.items() if name not in free}
 
 
-@pytest.mark.parametrize('name', FILES)
+@each(FILES)
 def test_file_is_short_and_has_a_telling_name(name):
     """No file has more than 300 lines or a name like utils, which would show several purposes."""
     assert len(FILES[name].read_text(encoding='utf-8').splitlines()) <= LONGEST

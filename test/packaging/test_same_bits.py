@@ -3,6 +3,7 @@
 import ast
 
 import pytest
+from support.each import each
 from support.places import ROOT
 
 CORE = ROOT / 'ins_sim' / 'core'
@@ -94,7 +95,7 @@ def _imported(node):
         yield from names & (TRANSCENDENTAL | PRODUCTS | SUMS)
 
 
-@pytest.mark.parametrize('name', FILES)
+@each(FILES)
 def test_core_leaves_no_bit_to_the_machine(name):
     """core has no transcendental function outside elementary, no BLAS, and no reordered sums."""
     if name != ELEMENTARY:

@@ -12,7 +12,7 @@ from ins_sim.studies.aided_ensembles import result_of, why_not
 import numpy as np
 import pytest
 from scipy.stats import chi2
-from support import aided_runs
+from support.aided import runs as aided_runs
 
 SECOND = 10 ** 9
 WANTED_NS = np.arange(0, 21, 5) * SECOND

@@ -1,6 +1,6 @@
 """Reports in a real browser, at the widths of a desktop and of a telephone."""
 
-from support.aided_runs import command
+from support.aided.runs import command
 from support.reports.browser import find_browser, seen
 from support.reports.charts import every_mark
 from ins_sim.report.page.content import Page, PageTable

@@ -8,7 +8,7 @@ from ins_sim.report.runs.kml import FILE, unbroken, write_tracks
 from ins_sim.report.runs.track import Track
 import numpy as np
 import pytest
-from support.aided_runs import command
+from support.aided.runs import command
 
 SPACE = '{http://www.opengis.net/kml/2.2}'
 

@@ -18,7 +18,7 @@ from support.live import Chain, Listener, warnings_of_loss
 import numpy as np
 import pytest
 from support.stream import DT, offline_fixes, SECOND, Stream
-from support.aided_streams import chosen_settings, VALUES
+from support.aided.streams import chosen_settings, VALUES
 
 pytest.importorskip('rclpy')
 pytestmark = pytest.mark.live

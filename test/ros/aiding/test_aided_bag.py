@@ -1,6 +1,6 @@
 """The recorded bag of six live nodes in lock-step equals that of ``simulate --aided --bag``."""
 
-from support.aided_runs import command
+from support.aided.runs import command
 from ins_sim.bags.bag_reader import open_bag
 from ins_sim.messages import topics, velocity_record
 from support.live import Chain

@@ -6,7 +6,7 @@ from functools import partial
 from ins_sim.messages import topics
 from ins_sim.messages.cdr import stamp_of
 import pytest
-from support.aided_streams import VALUES as FLIGHT
+from support.aided.streams import VALUES as FLIGHT
 from support.hostile.fed_nodes import FedNodes
 
 pytest.importorskip('rclpy')

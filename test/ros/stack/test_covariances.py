@@ -8,7 +8,7 @@ from ins_sim.messages import topics
 from ins_sim.messages.cdr import Reader
 import numpy as np
 import pytest
-from support.aided_runs import command
+from support.aided.runs import command
 
 # For each message type: offsets of covariances among its doubles, and their size.
 PLACES = {topics.IMU: ((4, 3), (16, 3), (28, 3)), topics.ODOMETRY: ((7, 6), (49, 6)),

@@ -1,0 +1,1 @@
+"""Aided flights for tests: their fixes, offline runs and live streams."""
