@@ -284,7 +284,7 @@ class ErrorBudget:
         ValueError
             If the folder exists and must not be replaced, or a text is not a requirement.
         """
-        from ins_sim.own_folders import whole_folder
+        from ins_sim.own_folders.own_folder import whole_folder
         from ins_sim.report.studies import budget as report
         checked_path('folder', folder)
         answers = [self.requirement(text) for text in requirements]

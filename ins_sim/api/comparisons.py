@@ -132,7 +132,7 @@ class FilterComparison:
         ValueError
             If the folder exists and must not be replaced, or does not hold a comparison.
         """
-        from ins_sim.own_folders import whole_folder
+        from ins_sim.own_folders.own_folder import whole_folder
         from ins_sim.report.studies import filter_charts
         checked_path('folder', folder)
         with whole_folder(folder, overwrite, filter_charts.MARK, 'overwrite=True') as work:

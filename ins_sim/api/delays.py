@@ -136,7 +136,7 @@ class DelayStudy:
         ValueError
             If the folder exists and must not be replaced, or holds something else.
         """
-        from ins_sim.own_folders import whole_folder
+        from ins_sim.own_folders.own_folder import whole_folder
         from ins_sim.report.studies.delay_folder import MARK, write_study
         checked_path('folder', folder)
         with whole_folder(folder, overwrite, MARK, 'overwrite=True') as work:

@@ -195,7 +195,7 @@ class MonteCarlo:
         ValueError
             If the folder exists and must not be replaced, or does not hold a study.
         """
-        from ins_sim.own_folders import whole_folder
+        from ins_sim.own_folders.own_folder import whole_folder
         from ins_sim.report.studies import ensemble
         checked_path('folder', folder)
         with whole_folder(folder, overwrite, ensemble.ARRAYS, 'overwrite=True') as work:

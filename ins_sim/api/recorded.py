@@ -231,7 +231,7 @@ class Navigation:
         ValueError
             If the folder exists and must not be replaced, or does not hold a navigation.
         """
-        from ins_sim.own_folders import whole_folder
+        from ins_sim.own_folders.own_folder import whole_folder
         from ins_sim.report import navigation
         with whole_folder(checked_path('folder', folder), overwrite, navigation.MARK,
                           'overwrite=True') as work:

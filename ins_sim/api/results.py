@@ -169,7 +169,7 @@ class Run:
 
     def _write(self, folder: Folder, overwrite: bool, report: Any,
                files: tuple[int, bool, bool]) -> None:
-        from ins_sim.own_folders import existing_parent, whole_folder
+        from ins_sim.own_folders.own_folder import existing_parent, whole_folder
         from ins_sim.report import guided, storage, summary, titles
         from ins_sim.report.files.wanted import WantedFiles
         from ins_sim.report.runs.page import run_notes

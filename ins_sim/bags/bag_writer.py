@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ins_sim.own_folders import check_free, OwnFolder
+from ins_sim.own_folders.own_folder import check_free, OwnFolder
 from . import mcap_format as form
 from . import mcap_writer, metadata, qos, sqlite_writer
 from .compression import compression_library, NAMES

@@ -76,7 +76,7 @@ def _settings(names, duration_s, assignments=()):
 
 
 def _part(name, settings, folder, console):
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     # The old folder stays until the new part is complete.
     with whole_folder(folder, replace=True, mark='parameters.yaml') as work:
         _run(name, settings, work, folder, console)

@@ -24,7 +24,7 @@ def run(chosen):
     from ins_sim import parameter_files
     from ins_sim.core.postprocessing.navigate import navigate
     from ins_sim.io import imu
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report import navigation
     from ins_sim.report.console import PlainConsole
     from ins_sim.settings.navigate import NAVIGATE

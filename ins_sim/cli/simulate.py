@@ -35,7 +35,7 @@ def run(chosen):
     from ins_sim.core.simulation.inertial import simulate
     from ins_sim.core.timeseries.collecting import Collected
     from ins_sim.io.motion import read_motion
-    from ins_sim.own_folders import existing_parent, whole_folder
+    from ins_sim.own_folders.own_folder import existing_parent, whole_folder
     from ins_sim.report import guided, spool, storage, summary, table, titles
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.files.wanted import WantedFiles

@@ -7,7 +7,7 @@ import pytest
 from support.studies import LATE_MOTION_2_WORDS
 
 from ins_sim.cli.main import main
-from ins_sim import own_folders
+from ins_sim.own_folders import own_folder
 from ins_sim.report.runs import page
 
 
@@ -85,7 +85,7 @@ def test_a_failed_write_leaves_nothing(tmp_path, monkeypatch):
     assert main(['simulate', '-p', 'duration_s:=1.0', '-o', str(tmp_path / 'run')]) == 2
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(ValueError, match='exists'):
-        own_folders.check_free(tmp_path)
+        own_folder.check_free(tmp_path)
 
 
 @pytest.mark.parametrize('arguments, sentence', [

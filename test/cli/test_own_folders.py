@@ -9,7 +9,8 @@ import threading
 
 from ins_sim.bags.bag_writer import BagWriter
 from ins_sim.cli.main import main
-from ins_sim.own_folders import MARKER, OwnFolder, whole_folder
+from ins_sim.own_folders.marker import MARKER
+from ins_sim.own_folders.own_folder import OwnFolder, whole_folder
 import numpy as np
 import pytest
 from support.places import ROOT
@@ -23,7 +24,7 @@ KILLED = """
 import os
 from pathlib import Path
 import sys
-from ins_sim.own_folders import OwnFolder
+from ins_sim.own_folders.own_folder import OwnFolder
 folder = OwnFolder(sys.argv[1])
 (folder.work / 'half').write_text('x')
 (folder.work / 'more').mkdir()

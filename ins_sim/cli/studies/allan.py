@@ -29,7 +29,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Read or simulate, show and save; return the exit code."""
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     with whole_folder(chosen.output, chosen.force, MARK) as work:
         return _analyse(chosen, work)
 

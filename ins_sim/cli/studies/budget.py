@@ -29,7 +29,7 @@ def run(chosen):
     from ins_sim.core.prediction.budget.linear_budget import error_budget
     from ins_sim.core.prediction.budget.propagation import navigation_span_s
     from ins_sim.io.motion import read_motion
-    from ins_sim.own_folders import check_free, whole_folder
+    from ins_sim.own_folders.own_folder import check_free, whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import budget as report
     from ins_sim.report.studies.budget_beside import read_study

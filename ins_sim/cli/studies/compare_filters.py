@@ -31,7 +31,7 @@ def run(chosen):
     from ins_sim.core.motion.motion import check_length
     from ins_sim.jobs.executors import check_jobs, open_executor
     from ins_sim.jobs.store import BlockStore
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import filter_charts, filters
     from ins_sim.studies.filters import cases_of, compare, FilterPlan, run_settings

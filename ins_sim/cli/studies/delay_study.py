@@ -29,7 +29,7 @@ def add_arguments(parser):
 
 def run(chosen):
     """Simulate, print and save; return the exit code."""
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies.delay_folder import MARK, write_study
     from ins_sim.report.studies.delays import show_study

@@ -27,7 +27,7 @@ def add_arguments(parser):
 def run(chosen):
     """Compute, show and save the study of each parameter file; return the exit code."""
     from ins_sim import parameter_files
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.charts.png import save_chart
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.page.html import REPORT, write_page

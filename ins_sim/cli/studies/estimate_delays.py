@@ -41,7 +41,7 @@ def run(chosen):
 
 def _estimate(chosen, console):
     from ins_sim.core.calibration.model_lag import estimate_with_lag
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.charts.png import save_chart
     from ins_sim.report.page.html import write_page
     from ins_sim.report.studies import delay_estimate as report, delay_estimate_charts
@@ -107,7 +107,7 @@ def _compare(chosen, console):
     from ins_sim.core.numerics.instants import period_ns
     from ins_sim.core.sensors.imu.triad_model import triad_model
     from ins_sim.io.bench import is_named
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.charts.png import save_chart
     from ins_sim.report.page.html import write_page
     from ins_sim.report.studies import bench_motions as report

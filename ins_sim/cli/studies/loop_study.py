@@ -34,7 +34,7 @@ def add_arguments(parser):
 def run(chosen):
     """Simulate, print and save; return the exit code."""
     from ins_sim.core.guidance.steering import margin_sentence
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.charts.png import save_chart
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.page.html import REPORT, write_page

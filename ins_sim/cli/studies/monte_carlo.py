@@ -30,7 +30,7 @@ def run(chosen):
     from ins_sim.io.motion import read_motion
     from ins_sim.jobs.executors import check_jobs, open_executor
     from ins_sim.jobs.store import BlockStore
-    from ins_sim.own_folders import whole_folder
+    from ins_sim.own_folders.own_folder import whole_folder
     from ins_sim.report.console import PlainConsole
     from ins_sim.report.studies import ensemble as report
     from ins_sim.studies.aided_ensembles import (AidedPlan, check_aided_flight,

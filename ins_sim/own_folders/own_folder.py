@@ -1,26 +1,16 @@
-"""
-Write output folders atomically, by one process at a time, without deleting foreign files.
-
-A folder written by ins_sim has a marker file, which lists the other entries.  Only a folder that
-holds nothing else is ever replaced, by renaming, once the new one is complete.
-"""
+"""Write a folder atomically, by one process at a time."""
 
 from contextlib import contextmanager, suppress
 import errno
 import fcntl
-import json
 import os
 from pathlib import Path
 import shutil
-import signal
 import tempfile
-import threading
 
-MARKER = '.ins_sim'
-HEAD = '# written by ins_sim; a folder that holds more than these names is never replaced\n'
-# Entry of the marker in an unfinished folder, which may hold any names.
-ANYTHING = '*'
-HELD = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+from .marker import ANYTHING, foreign, HEAD, MARKER, own_names, remove, write_marker
+from .signals import signals_held
+
 FOLDER_FLAGS = os.O_RDONLY | os.O_DIRECTORY
 
 
@@ -28,11 +18,26 @@ class OwnFolder:
     """
     An output folder that this process alone is writing.
 
-    path: final path; replace: replace an existing folder of ins_sim; in_place: write under the
-    final path if it is free, so that the output of a killed process can be read, instead of in
-    a folder ``work`` next to it; mark: a name that a folder to be replaced must hold; option:
-    how the user spells replace.  Write into ``work``, then call ``commit``, ``discard`` or
-    ``close``.  Raises ValueError as check_free, and if another process is writing there.
+    Write into ``work``, then call ``commit``, ``discard`` or ``close``.
+
+    Parameters
+    ----------
+    path : final path
+    replace : whether to replace an existing folder of ins_sim
+    in_place : write under the final path if it is free, so that the output of a killed process
+        can be read, instead of into a folder next to it
+    mark : a name that a folder to be replaced must hold
+    option : how the user spells ``replace``, for messages
+
+    Attributes
+    ----------
+    path : final path, without links
+    work : folder to write into
+
+    Raises
+    ------
+    ValueError : as check_free, and if another process is writing there
+
     """
 
     def __init__(self, path, replace=False, in_place=False, mark='', option='--force'):
@@ -43,7 +48,7 @@ class OwnFolder:
         self.work = self.path if in_place and not self.path.exists() else beside
         self._made, self._lock = _make_parents(self.path), None
         try:
-            with _signals_held():
+            with signals_held():
                 self._claim()
                 if self.work != self.path:
                     # Another process may have finished between the first check and the claim.
@@ -62,7 +67,7 @@ class OwnFolder:
             lock = self._locked(self.work)
             try:
                 # The folder was left behind by a killed process.
-                if any(self.work.iterdir()) and ANYTHING not in (_own_names(self.work) or ()):
+                if any(self.work.iterdir()) and ANYTHING not in (own_names(self.work) or ()):
                     raise ValueError(f'{self.work} is in the way and was not written by ins_sim; '
                                      'expected it to be moved')
                 shutil.rmtree(self.work)
@@ -106,18 +111,18 @@ class OwnFolder:
     def note(self, *names):
         """Add names of entries to the marker, before the entries are created."""
         fresh = not (self.work / MARKER).exists()
-        _write_marker(self.work, 'a', HEAD * fresh, names)
+        write_marker(self.work, 'a', HEAD * fresh, names)
 
     def commit(self):
         """Move the folder to its final path and list all its entries in the marker."""
         if self.work == self.path:
             self.close()
             return
-        with _signals_held():
+        with signals_held():
             self._take_place()
 
     def _take_place(self):
-        _write_marker(self.work, 'w', HEAD, sorted(
+        write_marker(self.work, 'w', HEAD, sorted(
             p.name for p in self.work.iterdir() if p.name != MARKER))
         old = None
         if self.path.exists() and any(self.path.iterdir()):
@@ -135,7 +140,7 @@ class OwnFolder:
         self.work = self.path
         self.close()
         if old is not None:
-            _remove(old)
+            remove(old)
 
     def discard(self):
         """Delete what was written."""
@@ -143,7 +148,7 @@ class OwnFolder:
             # This process created the folder, under a name that nothing else uses.
             shutil.rmtree(self.work, ignore_errors=True)
         else:
-            _remove(self.work)
+            remove(self.work)
         self._drop_parents()
         self.close()
 
@@ -168,7 +173,7 @@ def whole_folder(path, replace=False, mark='', option='--force'):
     """
     folder = None
     try:
-        with _signals_held():
+        with signals_held():
             folder = OwnFolder(path, replace, mark=mark, option=option)
         yield folder.work
         folder.commit()
@@ -180,9 +185,17 @@ def whole_folder(path, replace=False, mark='', option='--force'):
 
 def check_free(path, replace=False, mark='', option='--force'):
     """
-    Raise ValueError unless path is free, or holds a folder of ins_sim and replace is true.
+    Check that path is free, or holds a folder of ins_sim that may be replaced.
 
-    mark: a name that such a folder must hold; option: how the user spells replace.
+    Parameters
+    ----------
+    path : path of the folder to be written
+    replace, mark, option : see OwnFolder
+
+    Raises
+    ------
+    ValueError : with what is in the way
+
     """
     folder, here = _real(path), Path.cwd()
     if folder == Path(folder.root):
@@ -198,65 +211,15 @@ def check_free(path, replace=False, mark='', option='--force'):
     if folder == here or folder in here.parents:
         raise ValueError(f'{path} holds the current folder, {here}; {option} replaces a folder as '
                          'a whole: run it from outside this folder')
-    foreign = _foreign(folder, mark)
-    if foreign:
-        raise ValueError(f'{path}: {foreign}; {option} replaces only what the same command wrote')
+    obstacle = foreign(folder, mark)
+    if obstacle:
+        raise ValueError(f'{path}: {obstacle}; {option} replaces only what the same command wrote')
 
 
 def existing_parent(folder):
     """Return the nearest existing folder above a folder, which need not exist."""
     folder = _real(folder)
     return next(p for p in (*folder.parents, folder) if p.exists())
-
-
-def _foreign(folder, mark=''):
-    """Return why a folder must not be replaced, or '' if it holds only entries of its marker."""
-    if not folder.is_dir():
-        return 'it is not a folder'
-    names = sorted(p.name for p in folder.iterdir())
-    if not names:
-        return ''
-    own = _own_names(folder)
-    if own is None:
-        return f'it has no marker {MARKER} of ins_sim'
-    if mark and mark not in own:
-        return f'it holds no {mark}'
-    for name in names:
-        entry = folder / name
-        if name == MARKER:
-            continue
-        if name not in own:
-            return f'it holds {name}, which ins_sim did not write'
-        if entry.is_dir() and not entry.is_symlink():
-            inner = _foreign(entry)
-            if inner:
-                return f'{name} in it: {inner}'
-    return ''
-
-
-def _own_names(folder):
-    """Return the names in the marker of a folder, or None without a valid marker."""
-    try:
-        head, *lines = (folder / MARKER).read_text(encoding='ascii').splitlines(keepends=True)
-        names = {json.loads(line) for line in lines} if head == HEAD else None
-        return names if names is None or all(Path(name).name == name for name in names) else None
-    except (OSError, ValueError, TypeError):
-        return None
-
-
-def _remove(folder):
-    """Delete the entries of the marker, and the folder itself if nothing else is in it."""
-    for name in _own_names(folder) or ():
-        entry = folder / name
-        if entry.is_dir() and not entry.is_symlink():
-            _remove(entry)
-        else:
-            with suppress(OSError):
-                entry.unlink()
-    with suppress(OSError):
-        if [p.name for p in folder.iterdir()] == [MARKER]:
-            (folder / MARKER).unlink()
-        folder.rmdir()
 
 
 def _make_parents(folder):
@@ -269,31 +232,3 @@ def _make_parents(folder):
 def _real(path):
     """Return an absolute path without links, so that a folder and not a link is renamed."""
     return Path(os.path.realpath(path))
-
-
-@contextmanager
-def _signals_held():
-    """
-    Delay signals that would interrupt a step until the end of the block.
-
-    A signal mask would not do: threads of NumPy's libraries receive signals as well.
-    """
-    # Python handles signals, and allows handlers to be set, only in the main thread.
-    main = threading.current_thread() is threading.main_thread()
-    # A handler that was not set by Python is None here; it raises no exception.
-    held, before = [], {number: handler for number in HELD
-                        if main and (handler := signal.getsignal(number)) is not None}
-    try:
-        for number in before:
-            signal.signal(number, lambda number, frame: held.append(number))
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for number in held:
-            signal.raise_signal(number)
-
-
-def _write_marker(folder, mode, head, names):
-    with open(folder / MARKER, mode, encoding='ascii') as marker:
-        marker.write(head + ''.join(json.dumps(name) + '\n' for name in names))

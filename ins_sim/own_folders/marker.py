@@ -1,0 +1,69 @@
+"""
+The marker file of a folder written by ins_sim, which lists the other entries.
+
+Only a folder that holds nothing else is ever replaced, by renaming, once the new one is complete.
+"""
+
+from contextlib import suppress
+import json
+from pathlib import Path
+
+MARKER = '.ins_sim'
+HEAD = '# written by ins_sim; a folder that holds more than these names is never replaced\n'
+# Entry of the marker in an unfinished folder, which may hold any names.
+ANYTHING = '*'
+
+
+def foreign(folder, mark=''):
+    """Return why a folder must not be replaced, or '' if it holds only entries of its marker."""
+    if not folder.is_dir():
+        return 'it is not a folder'
+    names = sorted(p.name for p in folder.iterdir())
+    if not names:
+        return ''
+    own = own_names(folder)
+    if own is None:
+        return f'it has no marker {MARKER} of ins_sim'
+    if mark and mark not in own:
+        return f'it holds no {mark}'
+    for name in names:
+        entry = folder / name
+        if name == MARKER:
+            continue
+        if name not in own:
+            return f'it holds {name}, which ins_sim did not write'
+        if entry.is_dir() and not entry.is_symlink():
+            inner = foreign(entry)
+            if inner:
+                return f'{name} in it: {inner}'
+    return ''
+
+
+def own_names(folder):
+    """Return the names in the marker of a folder, or None without a valid marker."""
+    try:
+        head, *lines = (folder / MARKER).read_text(encoding='ascii').splitlines(keepends=True)
+        names = {json.loads(line) for line in lines} if head == HEAD else None
+        return names if names is None or all(Path(name).name == name for name in names) else None
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def remove(folder):
+    """Delete the entries of the marker, and the folder itself if nothing else is in it."""
+    for name in own_names(folder) or ():
+        entry = folder / name
+        if entry.is_dir() and not entry.is_symlink():
+            remove(entry)
+        else:
+            with suppress(OSError):
+                entry.unlink()
+    with suppress(OSError):
+        if [p.name for p in folder.iterdir()] == [MARKER]:
+            (folder / MARKER).unlink()
+        folder.rmdir()
+
+
+def write_marker(folder, mode, head, names):
+    with open(folder / MARKER, mode, encoding='ascii') as marker:
+        marker.write(head + ''.join(json.dumps(name) + '\n' for name in names))
