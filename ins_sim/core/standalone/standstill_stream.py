@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ins_sim.core.postprocessing.standstill import (
-    standstill_of, StandstillSearch, together_at, window_length_ns, WindowMoments)
+from ins_sim.core.postprocessing.standstill import standstill_of, StandstillSearch
+from ins_sim.core.postprocessing.windows import together_at, window_length_ns, WindowMoments
 from .samples import recorded
 
 # Number of windows without a standstill after which the obstacle is reported.

@@ -1,13 +1,8 @@
 """
 Recorded flight as a motion: splines through the samples (docs/theory/recorded_flights.md).
 
-The attitude relative to local ENU is a C2 rotation spline on the recorder's own times (SciPy's
-RotationSpline: the rotation vector within an interval is a cubic); positions are interpolating
-splines of degree 5. Do not use slerp or linear interpolation: they bias the drift by up to 51 %.
-If the rate was recorded too, the attitude is the cubic through attitude and rate at both ends.
-
-SciPy solves for the coefficients; the polynomials are evaluated here, elementwise, in the time
-since the first sample of the interval. Thus the result at an instant does not depend on the other
+The polynomials fitted to the samples (``fitting``) are evaluated elementwise, in the time since
+the first sample of the interval. Thus the result at an instant does not depend on the other
 instants in the call, and int64 nanoseconds lose no precision far from zero.
 """
 
@@ -16,29 +11,21 @@ import math
 import numpy as np
 
 from ins_sim.core.attitude import quaternion
-from ins_sim.core.attitude.interpolation import hermite_coefficients
 from ins_sim.core.numerics import taylor
 from ins_sim.core.timeseries.histories import Truth
-from . import quality
+from . import fitting, quality
 from ..motion import Motion
 from ..truth import truth_from_pose
 from .faults import median_interval, unbroken_part
 
 # The ends are not flown: the spline is inexact there, and delayed channels need earlier samples.
 PAD_S = 3.0
-DEGREE = 5
 FEWEST_ROWS = 8
 # Longest interval between rows that is interpolated; longest run that the settings allow.
 LONGEST_INTERVAL_S, LONGEST_S = 600.0, 1e7
 
 # -3 dB of a boxcar of T seconds: sin(x)/x = 1/sqrt(2) at x = pi f T, so f T = 0.4429.
 BOXCAR_3DB = 0.4429
-
-# A recorded rate is rejected as inconsistent if it differs from the differences of the attitude
-# by more than the error of the trapezium rule (a twelfth of the square of the angle between
-# samples) plus the effect of rounding.
-RATE_PART = 0.1
-RATE_RAD_S = 1e-3
 
 # Blocks keep the temporaries in the cache; any size gives the same result.
 BLOCK = 16384
@@ -55,25 +42,34 @@ class RecordedMotion(Motion):
 
     Motion time 0 is recorder time start_s after the first row; the recording must extend 3 s
     further on both sides (end effects of the splines; history of delayed channels).
-    end_s: last motion time that may be used, s; zero_ns: recorder stamp of motion time 0.
-    warnings: sentences on what was assumed, cut, smoothed or found noisy.
+
+    Parameters
+    ----------
+    poses : RecordedPoses
+    recording : settings.motion.Recording
+    earth : settings.place.Earth
+
+    Attributes
+    ----------
+    end_s : last motion time that may be used, s
+    zero_ns : recorder stamp of motion time 0, ns
+    warnings : sentences on what was assumed, cut, smoothed or found noisy
+
+    Raises
+    ------
+    ValueError : for an unusable record (see ``faults``) or a start outside it
+
     """
 
     end_name = 'the end of the recording'
 
     def __init__(self, poses, recording, earth):
-        """
-        Check and spline a recording.
-
-        poses: RecordedPoses; recording: settings.motion.Recording; earth: settings.place.Earth.
-        Raises ValueError, with one sentence, for an unusable record (``faults``) or a start
-        outside it.
-        """
+        """Check the poses and fit splines to them."""
         self.path = recording.path
         self._earth_rotation, self._gravity = earth.rotation, earth.gravity
         rows = poses
         q, rate = rows.q_nb, rows.omega_nb_b
-        part, cut = unbroken_part(rows, _turns(q), recording.start_s, recording.on_gap)
+        part, cut = unbroken_part(rows, fitting.turns(q), recording.start_s, recording.on_gap)
         self.warnings = [*rows.notes, *cut]
         self.zero_ns = int(rows.t_ns[0]) + round(recording.start_s * 1e9)
         self._knots = rows.t_ns[part] - self.zero_ns
@@ -92,19 +88,19 @@ class RecordedMotion(Motion):
         q = q[part]
         if recording.smoothing_s:
             # The recorded rates do not belong to the smoothed motion, so they are not used.
-            position, q, rate = *_smoothed(t, position, q, recording.smoothing_s), None
+            position, q, rate = *fitting.smoothed(t, position, q, recording.smoothing_s), None
             self.warnings += self._smoothing_report(recording.smoothing_s, t)
         self._base = q
-        self._position = _position_spline(t, position)
+        self._position = fitting.position_spline(t, position)
         if rate is None:
-            self._rotation = _rotation_spline(t, q)
+            self._rotation = fitting.rotation_spline(t, q)
         else:
-            _check_rates(rows.path, t, q, rate[part])
-            self._rotation = _rotation_cubics(t, q, rate[part])
+            fitting.check_rates(rows.path, t, q, rate[part])
+            self._rotation = fitting.rotation_cubics(t, q, rate[part])
         self._terms = _terms(self._rotation, np.diff(t))
         lat, lon, height = position + self._origin[:, None]
         self.warnings += quality.describe_quality(
-            rows.path, int(self._knots[0]) + self.zero_ns, t, lat, lon, height, _turns(q),
+            rows.path, int(self._knots[0]) + self.zero_ns, t, lat, lon, height, fitting.turns(q),
             rows.resolution, recording.smoothing_s)
 
     def _check_extent(self, recording, zero_ns):
@@ -212,89 +208,3 @@ def _exponential(r, r_rate, terms):
     s_rate = slope * (2.0 * dot)
     return tuple(taylor.Series(np.array([s * u[k], s_rate * u[k] + s * w[k]]))
                  for k in range(3)) + (taylor.Series(np.array([c, -s * dot])),)
-
-
-def _turns(q):
-    """Return (n - 1, 3) rotation vectors from row to row, rad."""
-    from scipy.spatial.transform import Rotation
-    rotation = Rotation.from_quat(q)
-    return (rotation[:-1].inv() * rotation[1:]).as_rotvec()
-
-
-def _smoothed(t, position, q, window_s):
-    """
-    Return positions (3, n) and quaternions (n, 4) averaged over a window centred on each row.
-
-    The average is the integral of the interpolating spline, so that uneven stamps are handled;
-    near the ends the window narrows to stay centred. The attitude is the normalised mean of
-    quaternions with continuous signs: the mean rotation to third order in the spread, without
-    a singularity at 90 deg of pitch (Markley et al., "Averaging Quaternions", 2007).
-    """
-    from scipy.interpolate import make_interp_spline
-    half = np.minimum(0.5 * window_s, np.minimum(t - t[0], t[-1] - t))
-    inner = slice(1, -1)
-    low, high = t[inner] - half[inner], t[inner] + half[inner]
-
-    def mean(values, degree):
-        integral = make_interp_spline(t, values, k=degree).antiderivative()
-        result = values.copy()
-        result[inner] = (integral(high) - integral(low)) / (high - low)[:, None]
-        return result
-
-    q = mean(q, 3)
-    norm = np.sqrt((q * q).sum(axis=1))
-    if norm.min() < 0.5:
-        # Uniform rotation by an angle A gives 4 sin(A/4) / A; 0.5 is a turn of 434 deg.
-        raise ValueError(f'motion.recording.smoothing_s is {window_s:g} s, in which the vehicle '
-                         'turns more than once; expected a window shorter than one turn takes')
-    return mean(position.T, DEGREE).T, q / norm[:, None]
-
-
-def _position_spline(t, position):
-    """
-    Return coefficients (6, 3, intervals), highest first, about the start of each interval.
-
-    Each polynomial passes through value, first and second derivative of the spline at both ends
-    of its interval, so that neighbours match to rounding. Higher derivatives of the spline, taken
-    at one end, would leave steps of 1e-9 m/s: 1 mm in ten minutes of cruise at 100 Hz.
-    """
-    from scipy.interpolate import make_interp_spline
-    spline = make_interp_spline(t, position.T, k=DEGREE)
-    p, v, a = position, *(spline(t, nu=k).T for k in (1, 2))
-    h = np.diff(t)
-    # Remainder at the end of the interval beyond the parabola from its start, in position units.
-    far = np.diff(p) - (v[:, :-1] + 0.5 * a[:, :-1] * h) * h
-    faster = (np.diff(v) - a[:, :-1] * h) * h
-    bent = 0.5 * np.diff(a) * h * h
-    return np.array([(6.0 * far - 3.0 * faster + bent) / h ** 5,
-                     (-15.0 * far + 7.0 * faster - 2.0 * bent) / h ** 4,
-                     (10.0 * far - 4.0 * faster + bent) / h ** 3,
-                     0.5 * a[:, :-1], v[:, :-1], p[:, :-1]])
-
-
-def _rotation_spline(t, q):
-    """Return local coefficients (4, 3, intervals) of the rotation vector within an interval."""
-    from scipy.spatial.transform import Rotation, RotationSpline
-    spline = RotationSpline(t, Rotation.from_quat(q))
-    return np.ascontiguousarray(np.moveaxis(spline.interpolator.c, 1, 2))
-
-
-def _rotation_cubics(t, q, rate):
-    """Return the same coefficients from the rates (n, 3), rad/s, at the ends of each interval."""
-    h = np.diff(t)
-    c1, c2, c3 = map(np.array, hermite_coefficients(h, _turns(q).T, rate[:-1].T, rate[1:].T))
-    return np.array([c3 / h ** 3, c2 / h ** 2, c1 / h, np.zeros_like(c1)])
-
-
-def _check_rates(path, t, q, rate):
-    """Reject rates (n, 3), rad/s, inconsistent with the attitude: another frame, or zeros."""
-    turning = _turns(q) / np.diff(t)[:, None]
-    off = _rms(turning - 0.5 * (rate[1:] + rate[:-1]))
-    if off > max(RATE_RAD_S, RATE_PART * _rms(turning)):
-        raise ValueError(f'{path}: the angular velocity differs by {off:.3g} rad/s rms from the '
-                         f'rotation rate of the attitude, {_rms(turning):.3g} rad/s; expected the '
-                         'angular velocity of the body, resolved in body axes')
-
-
-def _rms(vectors):
-    return math.sqrt(np.mean((vectors * vectors).sum(axis=1)))
