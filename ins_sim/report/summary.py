@@ -119,7 +119,7 @@ def gap_lines(faults):
     """Return the lines about gaps at which the strapdown was restarted."""
     if not faults:
         return []
-    return [f'{len(faults)} gaps, at each of which the strapdown started anew; the first: '
+    return [f'{len(faults)} gaps; the strapdown started anew after each; the first: '
             f'{faults[0]}']
 
 

@@ -47,9 +47,13 @@ class Samples(NamedTuple):
     """
     Readings of an IMU in columns, and the loop that advances over them.
 
-    t_ns: list of the stamps; columns: flat arrays or lists of the stamps (n,), rates (3 n,) rad/s,
-    specific forces (3 n,) m/s^2, true height (n,) m and true vertical velocity (n,) m/s; fly:
-    ``fly`` or its compiled copy.
+    Attributes
+    ----------
+    t_ns : list of the n stamps
+    columns : flat arrays or lists of stamps (n,), angular rates (3 n,) rad/s, specific forces
+        (3 n,) m/s^2, true heights (n,) m and true vertical velocities (n,) m/s
+    fly : ``fly`` or its compiled copy
+
     """
 
     t_ns: list

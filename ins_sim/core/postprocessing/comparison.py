@@ -38,8 +38,15 @@ class ErrorRow:
     """
     Errors at some time after the start, None if unknown.
 
-    vertical_m: positive up; speed_m_s: length of the horizontal velocity error; heading_deg:
-    positive clockwise.
+    Attributes
+    ----------
+    after_s : time after the start, s
+    horizontal_m : length of the horizontal position error, m
+    vertical_m : height error, positive up, m
+    speed_m_s : length of the horizontal velocity error, m/s
+    tilt_deg : angle between the true and the estimated vertical, deg
+    heading_deg : heading error, positive clockwise, deg
+
     """
 
     after_s: float

@@ -15,8 +15,13 @@ class RecordedImu(History):
     """
     Samples as they were recorded, in the sensor frame s or in the body frame b.
 
-    t_ns (n,) int64: stamps; omega (n, 3): rad/s; f (n, 3): specific force, m/s^2; q_ns (n, 4):
-    orientation from the messages, NaN for messages without an orientation.
+    Attributes
+    ----------
+    t_ns : (n,) int64 stamps
+    omega : (n, 3) angular rates, rad/s
+    f : (n, 3) specific forces, m/s^2
+    q_ns : (n, 4) orientations from the messages, NaN for messages without an orientation
+
     """
 
     t_ns: np.ndarray

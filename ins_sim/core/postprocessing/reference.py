@@ -109,8 +109,15 @@ class OdometryReference:
     """
     Poses in a frame of unknown place and heading, with z up.
 
-    name, frame; t_ns (n,); r (n, 3) m; q (n, 4) from b to the frame, with continuous signs; v_b
-    (n, 3) m/s in b.
+    Attributes
+    ----------
+    name : name of the topic or file
+    frame : name of the frame
+    t_ns : (n,) stamps
+    r : (n, 3) positions in the frame, m
+    q : (n, 4) quaternions from b to the frame, with continuous signs
+    v_b : (n, 3) velocities in b, m/s
+
     """
 
     name: str

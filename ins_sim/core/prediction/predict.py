@@ -24,7 +24,12 @@ class PredictedErrors(History):
     """
     Predicted errors.
 
-    t_s: time since the start (n,), s; attitude (n, 3), rad; position (n, 3), m.
+    Attributes
+    ----------
+    t_s : (n,) times since the start, s
+    attitude : (n, 3) attitude errors, rad
+    position : (n, 3) position errors, m
+
     """
 
     t_s: np.ndarray
@@ -65,11 +70,20 @@ class Prediction:
 
 def predict(settings, motion, collect=Collected) -> Prediction:
     """
-    Return the Prediction of SimulationSettings.
+    Predict drift and errors of a run by linear theory.
 
-    motion: that of settings.motion_generator; collect: see ``core.simulation.inertial.simulate``;
-    with None t_s, attitude and position are not computed and are None.  Raises ValueError if the
-    run has no finite length, NoPrediction for rotors that are stable only with RK4.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion, that of settings.motion_generator
+    collect : see ``core.simulation.inertial.simulate``; with None, t_s, attitude and position of
+        the Prediction are None
+
+    Raises
+    ------
+    ValueError : if the run has no finite length
+    NoPrediction : for rotors that are stable only with RK4
+
     """
     check_length(settings.motion_generator, motion)
     run = _FineRun(settings, motion)

@@ -114,9 +114,23 @@ def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
     """
     Run the strapdown over blocks of ImuSamples, with the truth from the motion.
 
-    Yield (truth, states, errors) records at the output instants of each block. A gap is handled
-    according to on_fault: the strapdown starts anew from the truth and a sentence is appended to
-    the list faults, or ValueError is raised.  covariance: a FreeCovariance to propagate, or None.
+    Parameters
+    ----------
+    settings : SimulationSettings
+    motion : Motion
+    blocks : iterable of ImuSamples
+    faults : list, to which a sentence is appended for each gap, or None
+    covariance : FreeCovariance to propagate, or None
+
+    Yields
+    ------
+    truth, states, errors : records at the output instants of each block
+
+    Raises
+    ------
+    ValueError : at a gap, if on_fault is ``stop``; otherwise the strapdown starts anew there,
+        from the truth
+
     """
     strapdown = StrapdownRun(settings, motion, faults, covariance)
     for imu in blocks:

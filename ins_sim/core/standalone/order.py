@@ -19,10 +19,14 @@ class SampleOrder:
     """
     Decides by its stamp what happens to a sample, so that as few as possible are dropped.
 
-    NEXT: the sample follows the last one. REPLACE: it replaces the last one, whose stamp was the
-    same or too late. HOLD: it is far ahead; the next sample shows whether time has leapt or this
-    stamp is wrong. RELEASE: time has leapt; use the held sample and then this one. DROP: drop it.
-    RESTART: time has jumped back for good.
+    The decisions are:
+
+    - NEXT: the sample follows the last one.
+    - REPLACE: it replaces the last one, whose stamp was the same or too late.
+    - HOLD: it is far ahead; the next sample shows whether time has leapt or this stamp is wrong.
+    - RELEASE: time has leapt; use the held sample and then this one.
+    - DROP: drop it.
+    - RESTART: time has jumped back for good.
     """
 
     def __init__(self):
