@@ -4,7 +4,7 @@ Run the tests as CI does, and print how long they took.
 Usage: python tools/run_tests.py fast | slow | figures
 
 Tests that start no processes run first, in parallel on all cores. The tests that start nodes
-follow, file by file on two workers: they mostly wait, and each has a ROS domain of its own.
+follow, file by file on three workers: they mostly wait, and each has a ROS domain of its own.
 ``figures`` runs the long studies one after another, each on all cores.
 """
 
@@ -13,7 +13,7 @@ import sys
 import time
 
 SIDE_BY_SIDE = ['-n', 'auto', '--dist', 'loadgroup']
-LIVE = ['-n', '2', '--dist', 'loadfile']
+LIVE = ['-n', '3', '--dist', 'loadfile']
 CALLS = {
     'fast': [(SIDE_BY_SIDE, 'not slow and not figures and not live'),
              (LIVE, 'live and not slow and not figures')],

@@ -69,6 +69,7 @@ def test_examples_of_the_docstring(name, tmp_path, monkeypatch):
     assert runner.summarize().failed == 0 < runner.tries
 
 
+@pytest.mark.slow
 def test_types():
     """The type checker mypy finds nothing in the public functions."""
     pytest.importorskip('mypy', reason='mypy is not installed')

@@ -184,6 +184,7 @@ def test_sensitivities_are_derivatives():
     assert slopes[key, ''] == pytest.approx(slope, rel=0.1)
 
 
+@pytest.mark.slow
 def test_instants_that_are_not_compared_are_counted(tmp_path, capsys):
     """
     A budget of 360 intervals has all instants of 10 intervals, but only the last of 7.
