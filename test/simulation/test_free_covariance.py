@@ -170,7 +170,7 @@ def test_the_files_describe_one_imu_to_both_nodes(name):
     stated = reported_variances(settings.imu_sensor)
     assert disagreement(settings.strapdown, stated) == ''
     assert disagreement(settings.strapdown, (stated[0], (1.0, 1.0, 1.0))).startswith(
-        'imu/data_raw states a noise of 1 m/s^2 a sample on axis x, and accelerometer.errors of '
+        'imu/data_raw states a noise of 1 m/s^2 per sample on axis x, and accelerometer.errors of '
         'strapdown have ')
 
 

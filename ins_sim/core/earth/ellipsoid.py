@@ -19,14 +19,15 @@ ROTATION_RATE = 7.292115e-5
 MEAN_RADIUS = 6371000.0
 GRAVITY_EQUATOR = 9.7803253359
 GRAVITY_FORMULA = 0.00193185265241
-# Normal gravity to second order in height h above the surface, relative to that at the surface:
+# Centrifugal acceleration at the equator divided by gravity, omega^2 a^2 b / GM.
+GRAVITY_RATIO = 0.00344978650684
+# a0, a1, a2 of normal gravity to second order in height h, relative to that at the surface:
 # 1 - h (a0 - a1 sin^2 lat) + a2 h^2 (Heiskanen and Moritz, "Physical Geodesy", 2-123; Groves
 # 2.139).
-GRAVITY_RATIO = 0.00344978650684
 SECOND_ORDER = (2.0 / SEMI_MAJOR * (2.0 - FLATTENING + GRAVITY_RATIO),
                 4.0 / SEMI_MAJOR * (1.0 - FLATTENING), 3.0 / (SEMI_MAJOR * SEMI_MAJOR))
-# Argument ``terms`` of the gravity functions for each value of settings.place.Earth.gravity. With
-# None, and only with None, the compiler can leave out the code of the other choice.
+# Argument ``terms`` of the gravity functions for each value of settings.place.Earth.gravity. It is
+# None, rather than a number, for free_air: the compiler then leaves out the second-order code.
 GRAVITY_TERMS = {'free_air': None, 'second_order': SECOND_ORDER}
 
 
@@ -41,13 +42,13 @@ def radii_and_gravity(sin_lat, height, terms):
 
     Radii: Groves 2.105, 2.106. Gravity points down along the ellipsoid normal: Somigliana's
     formula (Groves 2.134) with the free-air term (1 - 2 h / a), or with the SECOND_ORDER terms.
-    1 / sqrt(1 - e^2 sin^2) is the binomial series in x = e^2 sin^2 <= 0.0067 with a remainder
-    below 1e-18.
+    1 / sqrt(1 - e^2 sin^2) is computed as the binomial series in x = e^2 sin^2 <= 0.0067, whose
+    remainder is below 1e-18.
 
     Parameters
     ----------
     sin_lat, height : sine of latitude, and height above the ellipsoid (m)
-    terms : one of GRAVITY_TERMS
+    terms : one of the values of GRAVITY_TERMS
 
     """
     sin2 = sin_lat * sin_lat
@@ -70,12 +71,12 @@ def radii(sin_lat):
 
 
 def gravity(sin_lat, height, terms=None):
-    """Return normal gravity, m/s^2, down along the ellipsoid normal; terms: of GRAVITY_TERMS."""
+    """Return normal gravity, m/s^2, down; terms: one of the values of GRAVITY_TERMS."""
     return radii_and_gravity(sin_lat, height, terms)[2]
 
 
 def ecef(sin_lat, cos_lat, sin_lon, cos_lon, height):
-    """Return x, y, z in e, m (Groves 2.112)."""
+    """Return x, y, z in the Earth-fixed frame e, m (Groves 2.112)."""
     transverse = radii(sin_lat)[1]
     p = (transverse + height) * cos_lat
     return p * cos_lon, p * sin_lon, (transverse * (1.0 - ECCENTRICITY2) + height) * sin_lat
@@ -85,9 +86,9 @@ def geodetic_directions(x, y, z):
     """
     Return sine and cosine of latitude, sine and cosine of longitude, and height of a point in e.
 
-    Bowring's starting value and a Newton-like fixed point in the reduced latitude; three
-    iterations are exact to rounding (1e-9 m) from -10 km to 1000 km. On the axis of the Earth the
-    longitude is zero. Floats, m.
+    Fixed-point iteration in the reduced latitude from Bowring's starting value; three iterations
+    are exact to rounding (1e-9 m) at heights from -10 km to 1000 km. On the axis of the Earth the
+    longitude is returned as zero. The arguments are floats, in m.
     """
     p = sqrt(x * x + y * y)
     sin_lon, cos_lon = (y / p, x / p) if p > 0.0 else (0.0, 1.0)

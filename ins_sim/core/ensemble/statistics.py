@@ -3,14 +3,16 @@ Running statistics of errors: count, mean, co-moments, and histograms for percen
 
 Runs come in groups. The moments of each group are merged in the order of the groups (Chan, Golub
 and LeVeque, "Updating Formulae and a Pairwise Algorithm for Computing Sample Variances", 1979), so
-the last bits do not depend on which group is finished first. All sums are taken run by run.
+the last bits do not depend on which group is finished first. Within a group, sums are accumulated
+in the order of the runs.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-# Bins of a histogram: one below 2^LEAST, PARTS for each power of two, and one above.
+# Bins of a histogram: one for magnitudes below 2^LEAST; for either sign, PARTS for each power of
+# two from 2^LEAST to 2^GREATEST, and one above.
 LEAST, GREATEST, PARTS = -60, 40, 32
 EDGES = np.concatenate([np.ldexp(1.0 + np.arange(PARTS) / PARTS, e)
                         for e in range(LEAST, GREATEST + 1)])
@@ -50,7 +52,7 @@ def moments_of(samples):
 
 
 def merged(a, b):
-    """Return the Moments of two sets of samples together."""
+    """Return the Moments of the union of two sets of samples, given the Moments of each."""
     count = a.count + b.count
     per = 1.0 / np.maximum(count, 1)
     off = b.mean - a.mean
@@ -73,7 +75,8 @@ class ErrorStatistics:
     Attributes
     ----------
     moments : Moments over all runs
-    histogram : (m, n, bins) numbers of runs; bin k holds values below SIGNED_EDGES[k]
+    histogram : (m, n, bins) numbers of runs; bin k counts the values x with
+        SIGNED_EDGES[k - 1] <= x < SIGNED_EDGES[k]
 
     """
 
@@ -109,7 +112,7 @@ class ErrorStatistics:
         return both
 
     def arrays(self, name):
-        """Return ``{name_...: array}``; of the histogram only the bins that are not empty."""
+        """Return a dictionary {name_...: array}, with only the non-empty bins of the histogram."""
         filled = np.flatnonzero(self.histogram)
         return {f'{name}_count': self.moments.count, f'{name}_mean': self.moments.mean,
                 f'{name}_comoment': self.moments.comoment, f'{name}_bins': filled,
@@ -117,7 +120,7 @@ class ErrorStatistics:
 
     @classmethod
     def of_arrays(cls, arrays, name):
-        """Return the statistics from the arrays of ``arrays``."""
+        """Return the statistics from a dictionary that the method ``arrays`` has made."""
         made = cls(*arrays[f'{name}_mean'].shape)
         made.moments = Moments(*(arrays[f'{name}_{part}'] for part in Moments._fields))
         made.histogram.ravel()[arrays[f'{name}_bins']] = arrays[f'{name}_in_bins']
@@ -141,7 +144,7 @@ class ErrorStatistics:
 
     @property
     def rms(self):
-        """Return the root mean squares (m, n); NaN without a run."""
+        """Return the root mean squares (m, n); NaN if there are no runs."""
         diagonal = np.diagonal(self.moments.comoment, axis1=1, axis2=2)
         with np.errstate(invalid='ignore', divide='ignore'):
             return np.sqrt(diagonal / self.count[:, None] + self.mean * self.mean)

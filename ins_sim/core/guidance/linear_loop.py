@@ -3,15 +3,16 @@ Stability limits of the loop of vehicle, autopilot and aided navigator, exact in
 
 Between two corrections of the navigator everything is linear. The state x holds the estimates of z
 and of its rate, beta, the command, the commands delayed by the latency, and the state of the
-navigator; w is the reading of the meter:
+navigator. w is the lateral velocity read by the meter, and k_z its scale factor error:
 
     x+ = A x + b w,   w = (1 + k_z) D p,   p = c x
 
-p is the mean lateral velocity V beta since the last correction, and D averages it over a window:
-1, or for windows of n steps (1 - Q^-n)/(n (1 - Q^-1)), where Q is the operator of one step
-forward. Errors that are unobservable (the absolute position, and for paper_corrected the absolute
-velocity) are not in x. The characteristic equation is (1 + k_z) D(Q) c (Q - A)^-1 b = 1; on the
-unit circle it gives the limits of k_z.
+p is the mean lateral velocity V beta since the last correction. D averages p over a window: it is
+1 if a window is one step, and (1 - Q^-n)/(n (1 - Q^-1)) if it is n steps, where Q is the operator
+of one step forward. Errors that are unobservable (the absolute position, and for paper_corrected
+the absolute velocity) are not in x. The characteristic equation is
+(1 + k_z) D(Q) c (Q - A)^-1 b = 1; its solutions with Q on the unit circle and a real k_z are the
+limits of k_z.
 """
 
 import math
@@ -22,7 +23,8 @@ from scipy.linalg import schur
 
 from .linear_plant import after_period
 
-# Number of points of the unit circle at which real values of k_z are searched for.
+# Number of frequencies in the coarse search for real values of the response; each real value gives
+# a limit of k_z.
 POINTS = 2000
 # Responses smaller than this are rounding errors and are ignored.
 ROUNDING = 1e-9
@@ -38,8 +40,8 @@ class Aiding(NamedTuple):
     kind : one of KINDS
     cycles : N
     step : cycles between the ends of windows, a divisor of N, and N for paper_corrected
-    gain : for conventional the fraction of the error that a fix removes (K_v times the step if
-        windows slide), for paper_corrected K
+    gain : for conventional the fraction of the error that a fix removes (if windows slide, K_v in
+        1/s times the time between fixes), for paper_corrected K (docs/theory/aided_navigation.md)
     """
 
     kind: str
@@ -103,10 +105,10 @@ def growth(loop, aiding, k_z):
 
 def limits(loop, aiding):
     """
-    Return the limits of k_z between which the loop is stable.
+    Return the StabilityLimits of k_z.
 
-    Frequencies are aliased by the sampling at the corrections: at most pi divided by the time
-    between them.
+    The loop is sampled at the corrections, so the frequencies of the limits are aliased: they are
+    at most pi divided by the time between corrections.
 
     Parameters
     ----------
@@ -153,8 +155,8 @@ class _Response:
     """
     The response D(Q) c (Q - A)^-1 b on the unit circle; n: steps of a window.
 
-    It uses the Schur form of A, so that the cost at each Q is the square, not the cube, of the
-    number of states, which is large for a long latency.
+    It uses the Schur form of A, so that the cost at each Q grows with the square, not the cube, of
+    the number of states, which is large for a long latency.
     """
 
     def __init__(self, step, n):
@@ -210,9 +212,10 @@ def _step(loop, aiding):
 
 def _conventional(loop, aiding, now, mean, read):
     """
-    Subtract the fraction gain of the innovation from the velocity.
+    Subtract ``gain`` times the innovation (estimate minus fix) from the velocity estimate.
 
-    The state error is e_v. The fix is used as the velocity at the end of its window.
+    The state ``error`` is e_v, the error of the velocity estimate. The fix is used as if it were
+    the velocity at the end of its window.
     """
     innovation = loop.speed * now['beta'] + now['error']
     for name in ('v', 'error'):
@@ -225,7 +228,8 @@ def _paper_corrected(loop, aiding, now, mean, read):
     """
     Subtract dW = K nu from the acceleration, T dW from velocity, T^2/2 dW from position.
 
-    The state error is e_v minus z' of the last window: nu = (mean of it + mean of V beta - w)/T.
+    The state ``error`` is e_v - z', where z' is the residual of the last window after its
+    correction (``PaperCorrectedFilter``): nu = (mean of ``error`` + mean of V beta - w)/T.
     """
     span = aiding.cycles * loop.period_s
     nu, by_read = (now['sum_error'] / aiding.cycles + mean) / span, -1.0 / span

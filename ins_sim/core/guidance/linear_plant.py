@@ -59,7 +59,9 @@ def after_period(loop):
     """
     Return the matrix (3, 5) from the start to the end of a control period.
 
-    Its columns multiply z, v, beta, the old and the new command at the start of the period.
+    Its columns multiply z, v and beta at the start of the period, the last command and the new
+    one. If ``ramps``, the command changes linearly from the last to the new one over the period;
+    otherwise the new one acts from the start.
     """
     h = loop.period_s
 

@@ -1,9 +1,10 @@
 """
 Attitudes of the bench motions: pure functions ``(constants, t) -> q_nb``.
 
-t is the time in s: a float, an array, or a Taylor series. All give the same bits, so that the
-truth, which needs derivatives, and the compiled loops share these functions. ROWS holds, for each
-function, the loop over instants t that writes rows of four into the flat sequence out.
+t is the time in s: a float, an array, or a Taylor series. All three give the same bits, so that
+the truth, which needs derivatives, and the compiled loops can share these functions. ROWS holds,
+for each function, a loop over instants t that writes the four components of each quaternion into
+the flat sequence out.
 
 Constants are tuples of floats: ``base`` is an attitude, ``axis`` a unit vector, w an angular
 frequency in rad/s; angles and phases are in rad.
@@ -55,8 +56,8 @@ def coning(constants, t):
     """
     Let a body axis describe a cone.
 
-    The rotation vector is A (u cos w t + v sin w t); constants: base, u, v, sine and cosine of
-    A / 2, w.
+    The rotation vector is A (u cos w t + v sin w t), with unit vectors u and v at right angles to
+    that axis and to each other; constants: base, u, v, sine and cosine of A / 2, w.
     """
     base, u, v, sine, cosine, w = constants
     s, c = taylor.sincos(t * w)

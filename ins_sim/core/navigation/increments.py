@@ -71,10 +71,11 @@ def uneven_increments(kind, last, now, dt, dt_last):
     """
     Return the rotation vector and the velocity increment of an interval of any length.
 
-    Rate and force are assumed linear in time. With two instantaneous values, at the ends of the
-    interval, the coning and sculling terms are twice the cross products of the end values, added
-    to the trapezoid rule. With two means over unequal intervals they are those of the earlier
-    mean, scaled to this interval.
+    Rate and force are assumed linear in time. Instantaneous values w0, w1 at the ends of the
+    interval give alpha = dt (w0 + w1) / 2 and the coning term dt^2 w0 x w1 / 12, which is
+    (2 dt w0) x alpha / 12: 2 dt w0 takes the place of alpha_last in ``two_sample_increments``. For
+    means w0, w1 over intervals dt_last and dt its place is taken by
+    dt w0 times 2 dt / (dt + dt_last). The sculling term follows in the same way.
 
     Parameters
     ----------

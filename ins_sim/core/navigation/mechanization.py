@@ -34,8 +34,9 @@ PLACE = ('lat', 'lon', 'height', 'v_e', 'v_n', 'v_u', 'sin_lat', 'cos_lat', 'sin
 # Number of steps after which the sines are computed from the angles again. Between these
 # computations the rounding error grows by 1e-16 per step.
 RENEWED_EVERY = 256.0
-# Within 3 deg of a pole, or if n turns by more than 4 mrad in half an interval, the step is done
-# in Cartesian coordinates: a flight across a pole may turn n by more than a mrad per second.
+# The step is done in Cartesian coordinates if cos(lat) is below POLAR (within 3 deg of a pole,
+# where a flight may turn n by more than 1 mrad/s), or if n turns by more than TURN, rad, in half
+# an interval.
 POLAR, TURN = 0.05, 4e-3
 
 
@@ -122,7 +123,11 @@ def coriolis(m_e, m_n, m_u, cos_m, sin_m, per_north, per_east, earth_rate):
 
 
 def small_step(place, delta_v_i, dt, earth_rate, channel, reference, gravity=None):
-    """Advance PLACE if n turns by less than 0.01 rad; delta_v_i: velocity increment in i, m/s."""
+    """
+    Advance PLACE as ``advance`` does; n must turn by less than 0.01 rad (``is_small``).
+
+    delta_v_i: velocity increment in i, m/s; for the other arguments see ``advance``.
+    """
     (lat, lon, height, v_e, v_n, v_u, sin_lat, cos_lat, sin_lon, cos_lon, rest_lat, rest_lon, a_e,
      a_n, a_u, per_north, per_east, bias, age, c_e, c_n, c_u) = place
     x, y, z = delta_v_i

@@ -1,10 +1,11 @@
 """
 Elementary functions with the same bits on every machine.
 
-They are polynomials in + - * / and square roots, whose results IEEE 754 fixes to the last bit. The
-sine of a C library or of NumPy, in contrast, may differ between processors. Every function takes a
-float or an array and does the same operations on both; in compiled loops it takes floats. There
-are no branches: a choice is a product with a comparison, so that the compiler can vectorise it.
+They use only + - * / and square roots, whose results IEEE 754 fixes to the last bit. The sine of a
+C library or of NumPy, in contrast, may differ between processors. Every function takes a float or
+an array and does the same operations on both; in compiled loops it takes floats. Apart from
+shortcuts for single floats there are no branches: a choice is a product with a comparison, so that
+the compiler can vectorise it.
 
 Errors are below 1.5 units in the last place (ulp) unless a function states more (test_elementary
 compares with mpmath). Coefficients: Sun Microsystems fdlibm 5.3 (sin, cos, exp, log) and
@@ -20,7 +21,8 @@ ROUND = 6755399441055744.0
 # Angles below this, rad, need no reduction by quarter turns.
 SHORT = 0.785
 TWO_OVER_PI = 0.6366197723675814
-# pi/2 in three parts of 33 bits, whose products with integers below 2^20 are exact.
+# pi/2 in three parts. The first two have at most 33 bits, so that their products with integers up
+# to 2^20 are exact; the third is the remainder.
 HALF_PI_1, HALF_PI_2, HALF_PI_3 = (1.5707963267341256, 6.077100506303966e-11,
                                    2.0222662487959506e-21)
 # pi/4 in two parts; three times the first is exact.
@@ -88,7 +90,7 @@ def general_sincos(x):
 
 
 def sincos_of_quarters(x):
-    """Return sine and cosine of an angle in quarter turns."""
+    """Return sine and cosine of an angle x that is given in quarter turns."""
     k = (x + ROUND) - ROUND
     s, c = sine_cosine_kernel((x - k) * (0.5 * math.pi))
     return quarters_on(s, c, k)
@@ -235,5 +237,5 @@ def log1p(x):
 
 
 def shorter_turn(x):
-    """Return an angle minus whole turns, within +-pi (to rounding for several turns)."""
+    """Return an angle, rad, minus whole turns, from -pi to pi; both up to rounding errors."""
     return x - ((x * (0.5 / math.pi) + ROUND) - ROUND) * (2.0 * math.pi)

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import elementary
 
-# Number of terms of the Taylor series for row sums of at most 1/2; the remainder is 2e-17.
+# Highest power in the Taylor series. For row sums of at most 1/2 the remainder is below 1e-18.
 TERMS = 15
 
 

@@ -27,10 +27,11 @@ class Standstill:
     ----------
     start_ns, end_ns : stamps of the first and the last sample
     force, rate : (3,) means, m/s^2 and rad/s
-    force_sd, rate_sd : standard deviations within a window of means over ``together`` samples,
-        averaged over windows and axes
+    force_sd, rate_sd : standard deviations within a window, rms over the axes and mean over the
+        windows, m/s^2 and rad/s; they are those of means over ``together`` samples
     rate_error : (3,) standard error of the mean rate, see ``standard_error``
     windows : number of windows
+    together : see ``windows.WindowMoments``
 
     """
 
@@ -107,7 +108,7 @@ class StandstillSearch:
                 and length(window.rate) <= limits.rate_rad_s)
 
     def _joins(self, window):
-        """Return whether the mean force of a window agrees with those of the run."""
+        """Return whether mean force and mean rate of a window agree with those of the run."""
         turned, changed = self._off_run(window)
         return turned <= self._limits.force_sd_m_s2 and changed <= self._limits.rate_sd_rad_s
 
@@ -157,7 +158,8 @@ def find_standstill(imu, limits, speed_at=None, longest=False):
 
     Raises
     ------
-    ValueError : with what was found, if no run of quiet windows is long enough
+    ValueError : if no run of quiet windows is long enough; the message gives the longest run and
+        the quietest window
 
     """
     if len(imu) < 2 * FEWEST:

@@ -12,7 +12,7 @@ import numpy as np
 
 # Fewer samples in a window are too few for a variance estimate.
 FEWEST = 5
-# Standard deviations are those of means over at least 1 / BAND_HZ, s.
+# Samples are averaged in groups of at most 1 / BAND_HZ, s, before the standard deviation is taken.
 BAND_HZ = 400.0
 
 
@@ -23,10 +23,10 @@ class StillWindow(NamedTuple):
     Attributes
     ----------
     middle_ns : its middle, ns
-    full : whether most of its samples are present
+    full : whether at least half of its samples are present
     force, rate : (3,) means, m/s^2 and rad/s
-    force_sd, rate_sd : standard deviations, averaged over the axes, m/s^2 and rad/s
-    moving : whether a reference that measures velocity moves
+    force_sd, rate_sd : standard deviations, rms over the axes, m/s^2 and rad/s
+    moving : whether a reference measures a speed above the limit
 
     """
 
@@ -55,10 +55,10 @@ class WindowMoments:
     ----------
     first, last : (n,) indices of the samples of each window, last excluded
     count : (n,) number of samples
-    full : (n,) whether most of the samples are present
+    full : (n,) whether at least half of the samples are present
     together : number of samples that are averaged before the standard deviation is computed
     force, rate : (n, 3) means, m/s^2 and rad/s
-    force_sd, rate_sd : (n,) standard deviations, averaged over the axes, m/s^2 and rad/s
+    force_sd, rate_sd : (n,) standard deviations, rms over the axes, m/s^2 and rad/s
     middle_ns : (n,) middle of each window, ns
 
     """

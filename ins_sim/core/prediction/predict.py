@@ -82,7 +82,7 @@ def predict(settings, motion, collect=Collected) -> Prediction:
     Raises
     ------
     ValueError : if the run has no finite length
-    NoPrediction : for rotors that are stable only with RK4
+    NoPrediction : for rotors that are unstable with the exact method, which is always used here
 
     """
     check_length(settings.motion_generator, motion)
@@ -104,11 +104,11 @@ def predict(settings, motion, collect=Collected) -> Prediction:
 
 def _along_parallels(position, lat):
     """
-    Return position errors (n, 3) in the tangent plane at latitudes (n,), in measured coordinates.
+    Convert position errors (n, 3) in the tangent plane to those that a simulation measures.
 
-    These are east along the parallel and north along the meridian
-    (``navigation.errors.position_error``), to second order: a great circle that starts eastwards
-    leaves the parallel by d^2 tan(lat) / 2R.
+    These are east along the parallel and north along the meridian at latitudes (n,)
+    (``navigation.errors.position_error``). The conversion is to second order: a great circle that
+    starts eastwards leaves the parallel by d^2 tan(lat) / 2R.
     """
     s, c = elementary.sincos(lat)
     per_r = s / c / ellipsoid.MEAN_RADIUS
@@ -188,8 +188,8 @@ class _FineRun:
                                                self._held_ns))
             attitude, position = model.advance(truth, omega_in, _to_n(truth, truth.f_ib_b),
                                                beta + turned, df_n)
-            # Only for long delays: the published figures of short delays keep their bits, and
-            # their bound includes this effect.
+            # Only for long delays. For short delays published results must not change by a bit;
+            # their ``position_bound`` includes this effect.
             if self._turns.long:
                 position = _along_parallels(position, truth.lat[::SUBSAMPLES])
             # The first step of a block is the last one of the previous block.
@@ -201,9 +201,9 @@ class _FineRun:
         """
         Return a bound, m, of the terms of second order in the largest errors, rad and m.
 
-        For a rotation it is half the rotation times the position error that it causes. In
-        addition, a position error is measured along parallels and meridians
-        (``_along_parallels``).
+        For a rotation, by the attitude error or by the position error divided by the radius of the
+        Earth, they are at most half the rotation times the position error. In addition, position
+        errors are measured along parallels and meridians (``_along_parallels``).
         """
         angle = far / ellipsoid.MEAN_RADIUS
         return 0.5 * far * (turned + angle * (1.0 + 2.0 * self._steepest))
@@ -213,7 +213,7 @@ class _FineRun:
         Return a bound, rad/s, of the terms of second order in the drift.
 
         If the attitude error grows by e, its rotation vector grows by e + error x e / 2; the
-        second term is twice the area that it sweeps. turned: largest error, rad, for the next
+        second term is the area that the vector sweeps. turned: largest error, rad, for the next
         order.
         """
         return 0.5 * float(length(self._swept)) / self._span_s * (1.0 + turned)

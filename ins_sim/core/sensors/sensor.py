@@ -11,8 +11,8 @@ class Sensor:
     Base class of the sensors. A subclass overrides ``reset``, ``push`` and ``samples``.
 
     Readings are functions of the settings, the seed and motion time, so neither a restart nor the
-    cutting of the stream into blocks changes them. ``core.numerics.noise.indexed_noise`` gives
-    noise of this kind.
+    division of the stream into blocks changes them. ``core.numerics.noise.indexed_noise`` gives
+    noise with this property.
 
     The VelocityMeter is not a Sensor: it needs two streams, the truth and the INS, and has a
     ``push_truth`` and a ``push_ins``.

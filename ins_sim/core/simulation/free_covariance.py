@@ -15,7 +15,8 @@ from ins_sim.core.numerics.fixed_order import product
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.sensors.imu.error_sigmas import fixed_errors, triad_sigmas
 
-# IMU messages state variances up to these, (rad/s)^2 and (m/s^2)^2, for sensors without noise.
+# Even for sensors without noise, IMU messages may state variances up to these, (rad/s)^2 and
+# (m/s^2)^2.
 ALMOST_EXACT = 1e-11, 1e-9
 
 
@@ -99,8 +100,8 @@ def disagreement(settings, stated):
                                               stated, sigmas_of(settings), ALMOST_EXACT):
         for axis, one, other in zip('xyz', said, known.sample):
             if max(one, other) > least and not 0.25 * one <= other <= 4.0 * one:
-                return (f'imu/data_raw states a noise of {math.sqrt(max(0.0, one)):.3g} {unit} a '
-                        f'sample on axis {axis}, and {name}.errors of strapdown have '
+                return (f'imu/data_raw states a noise of {math.sqrt(max(0.0, one)):.3g} {unit} '
+                        f'per sample on axis {axis}, and {name}.errors of strapdown have '
                         f'{math.sqrt(other):.3g} {unit}; expected the values of this IMU: '
                         'otherwise the covariances of ins/* are wrong')
     return ''
@@ -110,7 +111,7 @@ class PublishedCovariance(NamedTuple):
     """
     The published part of a FreeCovariance, tuples of floats; valid from t_ns until the next one.
 
-    All include the square of the error that is the same in every run.
+    All but ``rate`` include the square of the error that is the same in every run.
 
     Attributes
     ----------

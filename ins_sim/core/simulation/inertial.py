@@ -1,4 +1,9 @@
-"""The unaided chain offline: motion, IMU, strapdown, errors, and the zero-delay twin."""
+"""
+Offline simulation without aiding: sense a motion, navigate, and compare with the truth.
+
+A twin is the same run with all channel delays set to zero; the difference shows what the delays
+alone cause.
+"""
 
 from dataclasses import dataclass
 from functools import partial
@@ -116,7 +121,7 @@ def navigate_blocks(settings, motion, blocks, faults=None, covariance=None):
 
     Parameters
     ----------
-    settings : SimulationSettings
+    settings : StrapdownSettings
     motion : Motion
     blocks : iterable of ImuSamples
     faults : list, to which a sentence is appended for each gap, or None

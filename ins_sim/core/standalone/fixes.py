@@ -9,7 +9,7 @@ import numpy as np
 from ins_sim.core.navigation.errors import position_error
 from ins_sim.core.postprocessing.reference import LONGEST_STEP_S, SampledTrack
 
-# Number of fixes kept; a standstill cannot have more.
+# Number of fixes kept; a standstill of the default length has far fewer.
 MOST = 10_000
 # Standard deviation of a fix with unknown covariance, m.
 UNKNOWN_SIGMA_M = 5.0
@@ -39,7 +39,7 @@ class PlaceFix(NamedTuple):
 
 
 class FixTrack:
-    """Fixes in the order of their stamps; a fix older than the last one is ignored."""
+    """Fixes in the order of their stamps; a fix that is not newer than the last one is ignored."""
 
     def __init__(self):
         self.fixes, self._new = deque(maxlen=MOST), deque(maxlen=MOST)
@@ -64,7 +64,11 @@ class FixTrack:
         return self.fixes[-1].t_ns if self.fixes else None
 
     def take_ways(self):
-        """Return new (stamp ns at mid-way, (east, north) m) from fix to fix, and forget them."""
+        """
+        Return the new displacements from fix to fix, and forget them.
+
+        Each is a tuple of the stamp half-way in time (ns) and (east, north) (m).
+        """
         ways = list(self._new)
         self._new.clear()
         return ways

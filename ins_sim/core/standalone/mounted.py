@@ -60,7 +60,7 @@ class LiveMounting:
 
     def find(self, frame, t_ns):
         """
-        Return q_bs for an IMU with this frame, or None if it may still arrive.
+        Return q_bs for an IMU with this frame, or None while the transform is not known.
 
         t_ns is the stamp of the sample that needs it.
         """

@@ -20,7 +20,8 @@ from ..route.motion import RouteMotion
 from ..truth import in_body, translation, truth_from_pose
 from .steered import SteeredHistory
 
-# ``one`` evaluates the track at AHEAD instants in one call, for up to PHASES instants per period.
+# ``one`` evaluates the track in advance, at AHEAD instants one control period apart. It keeps the
+# results for up to PHASES different phases of the period.
 AHEAD, PHASES = 256, 64
 # Up to this number of instants, evaluating them one by one is faster.
 FEW = 2
@@ -31,8 +32,9 @@ class GuidedMotion(RouteMotion):
     The flight described by settings.FlownRouteSettings and settings.GuidedSettings.
 
     The motion is known up to the end of the last commanded control period: ``known_ns`` of motion
-    time, or ``end_s`` in s. It does not depend on what computes the commands. ``begin`` restarts
-    it; ``command`` adds one control period. Before the first command the flight is straight.
+    time, or ``end_s`` in s. It depends on the commands only, not on how they are computed.
+    ``begin`` restarts it; ``command`` adds one control period. Before the first command the flight
+    is straight.
 
     arrival_s: when the track reaches the last turning point; route and turns: see RouteMotion.
     Raises ValueError, with one sentence, for a flight that cannot be flown.
@@ -53,7 +55,8 @@ class GuidedMotion(RouteMotion):
         self.period_ns = self._steered.period_ns
         half = elementary.sincos(-0.5 * self._attack)
         self._nose_up = (0.0, half[0], 0.0, half[1])
-        # For each phase of the control period: number of a period, and the flows from there on.
+        # For each phase of the control period: the number of the first period evaluated, and the
+        # results of ``_flow_at`` from that period on.
         self._ahead = {}
         self.begin(0)
 
@@ -207,5 +210,5 @@ def _series(coefficients):
 
 
 def guided_motion(motion, datum, earth):
-    """Return the GuidedMotion of MotionSettings; a Datum is not needed; earth: Earth."""
+    """Return the GuidedMotion of MotionSettings; earth: Earth; the datum is not used."""
     return GuidedMotion(motion.route, motion.guided, earth)

@@ -9,17 +9,17 @@ from ins_sim.core.numerics.instants import seconds
 
 # A missing row makes an interval of 2 medians; the remaining half median allows for jitter.
 GAP_MEDIANS = 2.5
-# The size of a position jump is the displacement beyond the median velocity of the five
-# intervals about it. It is impossible if it exceeds 50 g held for the interval (no aircraft does)
-# or 1000 m/s (no aircraft changes its velocity so much in one interval), whichever is less. Below
-# 20 m it is treated as the correction step of an on-board filter, which ``recording_quality``
-# reports.
+# The size of a position jump is the displacement in an interval dt minus that at the median
+# velocity of the five intervals around it. A jump is impossible if it exceeds JUMP_M_S2 dt^2 or
+# JUMP_M_S dt, whichever is less: no aircraft accelerates with 50 g or changes its velocity by 1000
+# m/s in one interval. Below 20 m it is treated as the correction step of an on-board filter, which
+# ``recording_quality`` reports.
 JUMP_M = 20.0
 JUMP_M_S2 = 500.0
 JUMP_M_S = 1000.0
 # An attitude jump is impossible if its rate exceeds that of its neighbours by 400 deg/s (the
-# fastest aerobatic roll is about 420); below 45 deg it is treated as a correction step. Beyond 120
-# deg from row to row the direction of rotation is ambiguous at any rate.
+# fastest aerobatic roll is about 420); below 45 deg it is treated as a correction step. A rotation
+# beyond 120 deg from row to row is always a jump, because its direction is ambiguous.
 TURN_DEG_S = 400.0
 TURN_DEG = 45.0
 AMBIGUOUS_DEG = 120.0
@@ -28,7 +28,7 @@ NAMED_AT_MOST = 8
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault between the rows index and index + 1."""
+    """A fault between the rows index and index + 1; kind: stamps, gaps or jumps; what: details."""
 
     index: int
     kind: str
@@ -45,17 +45,22 @@ def step_displacements(lat, lon, height):
 
 def step_excess(steps, dt):
     """
-    Return by how much each step exceeds the median rate of the five steps about it, (n,).
+    Return how far each step is from that at the median rate of the five steps around it, (n,).
 
-    steps (n, 3); dt (n,) s.  A step or a spike of up to two intervals stands out; a smooth motion
-    leaves only its third derivative.
+    The median is that of each component. A jump, or a spike of up to two intervals, stands out; of
+    a smooth motion only its third derivative contributes.
+
+    Parameters
+    ----------
+    steps : (n, 3) displacements or rotation vectors
+    dt : (n,) lengths of the intervals, s
     """
     from scipy.ndimage import median_filter
     rate = steps / dt[:, None]
     if len(dt) < 5:
         usual = np.median(rate, axis=0) if len(dt) > 2 else rate
     else:
-        # Near the ends use the median of three, extrapolated linearly to the last interval.
+        # Near each end use the median of three, extrapolated linearly to the outermost interval.
         usual = median_filter(rate, size=(5, 1))
         usual[1], usual[-2] = np.median(rate[:3], axis=0), np.median(rate[-3:], axis=0)
         usual[0], usual[-1] = 2.0 * usual[1] - usual[2], 2.0 * usual[-2] - usual[-3]
@@ -110,7 +115,7 @@ def _jumps(t_ns, first, dt, far, turned, angle):
 
 
 def describe_faults(faults, median_s):
-    """Return one clause that lists the faults by kind with their times, a handful of each."""
+    """Return a clause that lists the faults by kind, at most NAMED_AT_MOST of each with times."""
     titles = {'stamps': 'stamps that do not advance (',
               'gaps': f'gaps over {GAP_MEDIANS:g} times the median interval of {median_s:.4g} s '
                       '(after t_s = ',
@@ -133,7 +138,7 @@ def unbroken_part(rows, turns, start_s, on_gap):
     ----------
     rows : RecordedRows
     turns : (n - 1, 3) rotation vectors from row to row, rad
-    start_s : recorder time of motion time zero since the first row, s
+    start_s : time from the first row to the instant that becomes motion time zero, s
     on_gap : 'refuse' raises ValueError with the times of all faults; 'cut' keeps the part between
         faults that contains start_s
 
@@ -155,8 +160,8 @@ def unbroken_part(rows, turns, start_s, on_gap):
     if not holding:
         raise ValueError(f'{rows.path} has {found} and no part between them contains '
                          f'motion.recording.start_s = {start_s:g} s; '
-                         f'{hint or "no two rows are without a fault between them"}')
+                         f'{hint or "there is a fault between every two rows"}')
     first, last = holding[0]
     return slice(first, last + 1), [
-        f'{rows.path} has {found}; cut there, {since[first]:.6g} to {since[last]:.6g} s after '
-        f'the first row is kept, and {hint}']
+        f'{rows.path} has {found}; it is cut there: {since[first]:.6g} to {since[last]:.6g} s '
+        f'after the first row is kept; {hint}']

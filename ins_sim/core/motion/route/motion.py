@@ -2,11 +2,12 @@
 Flight along a route of great circles, with wind, gusts and a weaving heading.
 
 Between turns the track over ground is the great circle of ``earth.great_circle``; turns are
-coordinated and flown inside the corners (``turn``). Without weave the vehicle points along its
-velocity relative to the air, gusts excluded; with weave the heading oscillates about it, with
-sideslip. Gusts displace the vehicle. The body axes are those of the velocity relative to the air,
-banked about it as in a coordinated turn, and pitched up about the left axis by the angle of
-attack. With the rotation of the local axes and the Coriolis force the bank is
+coordinated and flown inside the corners (``turn``). The vehicle points along its velocity relative
+to the air, gusts excluded. With the weave ``flown`` this velocity oscillates, so that the track
+weaves too; with ``slipping`` only the heading oscillates, with sideslip, on a straight track.
+Gusts displace the vehicle. The body axes are those of the velocity relative to the air, banked
+about it as in a coordinated turn, and pitched up about the left axis by the angle of attack. With
+the rotation of the local axes and the Coriolis force the bank is
 
     atan(V [psi' - (2 Omega + lon') sin lat]/g)                                 (Groves 5.44, 5.53)
 """
@@ -113,7 +114,7 @@ class RouteMotion(Motion):
 
 
 def route_motion(motion, datum, earth):
-    """Return the flight along the route of MotionSettings; a Datum is not needed; earth: Earth."""
+    """Return the RouteMotion of MotionSettings; earth: Earth; the datum is not used."""
     return RouteMotion(motion.route, earth)
 
 

@@ -17,9 +17,10 @@ SAME_S = 1e-6
 @dataclass(frozen=True, eq=False)
 class LinearBudget:
     """
-    Covariances and means of the errors by source: position, velocity, attitude, east, north, up.
+    Covariances and means of the nine errors by source.
 
-    The attitude error is the inertial one, as in NavErrors.
+    They are the errors of position, velocity and attitude, each east, north, up. The attitude
+    error is the inertial one, as in NavErrors.
 
     Attributes
     ----------
@@ -107,6 +108,6 @@ def instants_of(settings, wanted_s):
             raise ValueError(f'the time is {t_s:g} s; expected a time of the navigation, 0 to '
                              f'{span_s:g} s')
     even = span_s * np.arange(INTERVALS + 1) / INTERVALS
-    # Do not add an instant that equals an evenly spaced one except for rounding.
+    # Leave out an instant that differs from an evenly spaced one only by rounding.
     others = [t_s for t_s in wanted.tolist() if np.abs(even - t_s).min() > SAME_S]
     return np.unique(np.concatenate([even, others]))

@@ -34,7 +34,8 @@ def make_imu(settings, motion=None):
     Raises
     ------
     ValueError
-        If the motion turns too fast for the rate of the IMU.
+        If the motion turns too fast for the rate of the IMU, or if it is guided and ``source`` is
+        motion.
     """
     if settings.source == 'stream':
         imu = StreamImu(settings)
@@ -234,7 +235,7 @@ class PacedImu(Sensor):
 
     @property
     def next_made_ns(self):
-        """Motion time of the next reading to be computed, ns, a block ahead; None at first."""
+        """Motion time of the next reading to compute, ns, up to a block ahead; None at first."""
         return None if self._imu is None else self._imu.next_ns
 
     def push(self, t_ns, q_mb, omega_ib_b, f_ib_b):

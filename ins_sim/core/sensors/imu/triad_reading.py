@@ -1,9 +1,9 @@
 """
 The errors of a triad as pure functions: one sample, and loops over many.
 
-Terms that are switched off are None. ``respond`` applies the errors that depend on the present
-input only. ``remember`` then applies those that need earlier samples: lags and pulses, and between
-them noise and range.
+The parameters of errors that are switched off are None. ``respond`` applies the errors that depend
+on the present input only. ``remember`` then applies those that need earlier samples: lags and
+pulses, and between them noise and range.
 """
 
 import math
@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 ZERO = (0.0, 0.0, 0.0)
-# Output minus input of the lags, and its rate, before the first sample.
+# Argument ``lagged`` before the first sample; it is not used, because the lags then start settled.
 AT_REST = ((0.0, 0.0),) * 3
 # Floats of at least this size (2^52) have no fractional part.
 WHOLE = 4503599627370496.0
@@ -85,7 +85,7 @@ def remember(lags, noise, most, quantum, dt, per_dt, following, lagged, carried,
     quantum : by axis, the weight of a pulse (rad or m/s); 0 for no quantisation
     dt, per_dt : sampling period, s, and its reciprocal
     following : whether this sample directly follows the last one; if not, the lags start settled
-        and the remainders of the pulses at zero
+        at the present input, and the remainders of the pulses start at zero
     lagged : by axis, output of the lag and its rate at the end of the sample before
     carried : by axis, remainder of the pulses of the sample before
     driven : input of the lags by axis
@@ -195,7 +195,7 @@ def pass_lag(lag, start, u):
 
 def count_pulses(increment, quantum, per_dt):
     """
-    Return the reading of the whole pulses in an increment, and the remainder.
+    Round an increment to whole pulses; return their reading and the remainder.
 
     Parameters
     ----------

@@ -20,15 +20,16 @@ ITERATIONS = 300
 @dataclass(frozen=True)
 class StateSpace:
     """
-    The gyro as x' = F x + g u, reading = c x + d u, complex.
+    The gyro as x' = F x + g u, reading = c x + d u, complex; for theta, u and v see ``rotor``.
 
     Attributes
     ----------
-    f, g, c, d : matrices (n, n), (n,), (n,) and scalar; x is (theta, v) or, in closed loop,
-        (theta, v, integral of theta + n), in rad, rad/s, rad s
-    moment, tilt : (n,) derivative of x per disturbing moment d (rad/s) and pick-off error n (rad)
+    f, g, c, d : (m, m), (m,), (m,) and a scalar for m states x = (theta, v) or, in closed loop,
+        (theta, v, integral of theta plus the pick-off error), in rad, rad/s, rad s
+    moment, tilt : (m,) derivative of x per disturbing moment, expressed as a rate (rad/s), and per
+        pick-off error (rad)
     tilt_reading : reading per pick-off error
-    jump, jump_reading : change of x (n,), and integral of the reading (rad), per jump of the
+    jump, jump_reading : change of x (m,), and integral of the reading (rad), per jump of the
         pick-off error, to which the derivative gain responds with an impulse
     """
 
@@ -129,7 +130,7 @@ def polynomial_roots(coefficients):
 
 
 def state_space(p, speed_hz=None):
-    """Return the StateSpace of TunedGyroParameters at a speed, by default the nominal one."""
+    """Return the StateSpace of TunedGyroParameters at a rotor speed, by default the nominal."""
     omega = p.omega if speed_hz is None else 2.0 * math.pi * speed_hz
     a, h, f = p.transverse_inertia, p.axial_inertia * omega, p.damping
     stiffness = complex(p.stiffness(speed_hz),

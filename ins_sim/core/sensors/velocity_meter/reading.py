@@ -55,7 +55,7 @@ def log_quadratic(values, first, even=False):
     Return g, d, c of ln C = g k^2 + d k + c by least squares with weights C^2 (equation 6).
 
     With these weights the errors of C, which are alike at all lags, count equally. The result is
-    NaN if the weights vanish at all but one or two lags.
+    NaN if too few lags have a weight that does not vanish.
 
     Parameters
     ----------
@@ -164,7 +164,9 @@ def slowness(tau, geometry, tan_alpha):
 
 def delay_velocity(a, b, geometry):
     """
-    Return the speeds by delays: along the trace of X1 in the plane of motion, and along Z1, m/s.
+    Return the speeds by delays, m/s.
+
+    The first is along the projection of X1 on the plane of motion, the second along Z1.
 
     Equation (3), which is exact: kappa a/(a^2 + b^2), and -s2 kappa b/(a^2 + b^2).
 
@@ -181,8 +183,8 @@ def sideslip(r12, r23, a, b, geometry, tan_alpha):
     """
     Return the sideslip beta by amplitudes (equation 5), rad, or None for a sine beyond 1.
 
-    sin(2 beta) = s2 (R12 - R23)/(2 X0 Y0 (a^2 + b^2)) with X0 cos(alpha) for X0 and a_K for a;
-    k_b is 1 for either kappa.
+    sin(2 beta) = s2 (R12 - R23)/(2 X0 Y0 (a^2 + b^2)), in which X0 is replaced by X0 cos(alpha),
+    and a by a_K. The factor k_b of equation (5) is left out: it is 1 for both values of kappa.
 
     Parameters
     ----------
@@ -202,8 +204,8 @@ def read_correlations(correlations, lag_s, geometry, tan_alpha):
     """
     Return the Reading of five correlation functions.
 
-    Equation (3) gives the speed along the trace of X1 in the plane of motion; v_x is its component
-    along X1, smaller by cos(alpha).
+    Equation (3) gives the speed along the projection of X1 on the plane of motion; v_x is its
+    component along X1, smaller by the factor cos(alpha).
 
     Parameters
     ----------

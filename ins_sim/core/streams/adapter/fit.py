@@ -1,4 +1,8 @@
-"""Knots from samples: the samples themselves, or parabolas fitted to the samples around them."""
+"""
+Knots, which are the input of the interpolation, from samples.
+
+A knot is a sample itself, or the value of a parabola fitted to the samples around it.
+"""
 
 from collections import deque
 
@@ -16,8 +20,8 @@ class KnotFit:
     Parameters
     ----------
     every : number of samples per knot
-    half_ns : a knot is the value of the parabola fitted to the samples within this distance, ns; 0
-        to use the sample itself
+    half_ns : a knot is the value, at its instant, of the parabola fitted to the samples that are
+        at most half_ns away, ns; 0 to use the sample itself
     period_ns : period of the samples, ns
     """
 
@@ -69,7 +73,7 @@ def _mean(factors, vectors):
 
 def parabola_weights(x):
     """
-    Return the weights that give, at 0, the least-squares parabola through values at x.
+    Return the weights with which values at x add up to their least-squares parabola at 0.
 
     With fewer than three abscissas, or with all on one side, only the value at 0 counts.
     """
