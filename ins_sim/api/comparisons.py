@@ -38,7 +38,7 @@ class FilterComparison:
     Attributes
     ----------
     settings : AidedSimulationSettings
-        Settings of flight 0; the seeds of flight k are these plus k.
+        Settings of flight 0; the seeds of flight k are larger by k.
     found : ComparedFilters
         ``flown`` holds for each case a FilterFlight for each flight; ``digest`` is the SHA-256 of
         all of them.
@@ -62,7 +62,7 @@ class FilterComparison:
 
     @property
     def digest(self) -> str:
-        """SHA-256 of all flights; it does not depend on the workers."""
+        """SHA-256 of all flights; it does not depend on ``jobs`` or ``scheduler``."""
         return self.found.digest
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -143,7 +143,7 @@ class FilterComparison:
 
 
 def _type(values: list[Any]) -> Any:
-    """Return the type of a column: float if a value is missing."""
+    """Return the dtype of a column: float if a value is None, which becomes NaN, else None."""
     return float if any(value is None for value in values) else None
 
 
@@ -157,7 +157,7 @@ def compare_filters(settings: AidedSimulationSettings, runs: int = 24,
     Parameters
     ----------
     settings : AidedSimulationSettings
-        From ``read_settings(..., aided=True)``; the seeds of flight k are these plus k.
+        From ``read_settings(..., aided=True)``; the seeds of flight k are larger by k.
     runs : int, optional
         Number of flights.
     filters : sequence of str, optional

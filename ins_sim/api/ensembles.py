@@ -81,12 +81,16 @@ class MonteCarlo:
 
     @property
     def diverged(self) -> tuple[int, ...]:
-        """Numbers of the runs that diverged; they are excluded from then on."""
+        """
+        Numbers of the runs that diverged.
+
+        The statistics exclude them from the divergence on or, with aiding, altogether.
+        """
         return self.result.diverged
 
     @property
     def digest(self) -> str:
-        """SHA-256 of the statistics and final errors; it does not depend on the workers."""
+        """SHA-256 of statistics and final errors, the same for any ``jobs`` and ``scheduler``."""
         digest: str = ensemble_digest(self.aided or self.result)
         return digest
 

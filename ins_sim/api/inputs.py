@@ -45,8 +45,8 @@ def read_settings(names: Names, values: Values | None = None,
         Parameter files: names of shipped ones, such as ``'motion_2'``, or paths. A section of a
         later file overrides the same section of an earlier one. An empty list gives the defaults.
     values : mapping, optional
-        Values by the name of the parameter, which override the files. ``'gyro.delay_us.y'`` sets
-        it in every node that has this parameter, ``'strapdown:output_every'`` in one node.
+        Values by the name of the parameter; they override the files. ``'gyro.delay_us.y'`` sets
+        this parameter in every node that has it, ``'strapdown:output_every'`` in one node.
     aided : bool, optional
         Whether to include the settings of the aided navigator and its sensors.
 

@@ -19,9 +19,9 @@ WRITERS = {'mcap': (mcap_writer.McapWriter, mcap_writer.SUFFIX),
 # Suffixes of the files that SQLite keeps next to a database.
 COMPANIONS = {mcap_writer.SUFFIX: (), sqlite_writer.SUFFIX: ('-wal', '-shm', '-journal')}
 CHUNK_BYTES = 1 << 21
-# A bag of a killed recorder has all messages that are older than this in log time.
+# Span of log time after which a chunk is written, so that little is lost if the process is killed.
 CHUNK_NS = 1_000_000_000
-# Least messages in a chunk; alternating stamps of two clocks would otherwise fill it with one.
+# Such a chunk has at least this many messages, even if log times of two clocks alternate.
 CHUNK_LEAST = 64
 LATEST_NS = 2**63 - 1
 
@@ -61,7 +61,7 @@ class BagWriter:
 
     @property
     def folder(self):
-        """Return the present path of the bag."""
+        """Return the folder into which the bag is being written."""
         return self._own.work
 
     def _empty(self):
@@ -141,8 +141,8 @@ class BagWriter:
         """
         Write blocks of messages in the order of log times; ties keep the order of the blocks.
 
-        blocks is {name: (log_ns (n,), messages (n,))}. messages is a NumPy array with one element
-        per message, from ``messages.cdr.Writer.block`` or bytes objects of any length.
+        blocks is {name: (log_ns (n,), messages (n,))}. messages is the array of
+        ``messages.cdr.Writer.block``, or an object array with the bytes of each message.
         """
         ready = []
         for name, (log_ns, messages) in blocks.items():
@@ -183,7 +183,7 @@ class BagWriter:
             self._single = ([], [], [])
 
     def flush(self):
-        """Write the waiting messages as one chunk or transaction."""
+        """Write the messages in the buffer as one chunk (MCAP) or transaction (SQLite)."""
         self._seal()
         if not self._columns:
             return
@@ -194,7 +194,7 @@ class BagWriter:
             self._append(part, begins_file)
 
     def _split(self, records):
-        """Yield Records, and whether a new file begins with them because of its time span."""
+        """Yield (whether the time span makes these Records begin a new file, the Records)."""
         if self._clocks is None:
             yield False, records
             return

@@ -23,23 +23,23 @@ INDEX_ENTRY = np.dtype([('log_ns', '<u8'), ('start', '<u8')])
 
 
 def record(opcode, body):
-    """Return a record with opcode and length."""
+    """Return the bytes of a record: opcode, length and content (body)."""
     return RECORD.pack(opcode, len(body)) + body
 
 
 def text(value):
-    """Return a string (str or bytes) with its length."""
+    """Return the bytes of a string (str or bytes), which begin with its length."""
     data = value.encode() if isinstance(value, str) else value
     return struct.pack('<I', len(data)) + data
 
 
 def text_map(pairs):
-    """Return a map of strings."""
+    """Return the bytes of a map of strings, from pairs (key, value)."""
     return text(b''.join(text(key) + text(value) for key, value in pairs))
 
 
 def number_map(pairs):
-    """Return a map of 16-bit to 64-bit numbers."""
+    """Return the bytes of a map of 16-bit to 64-bit numbers, from pairs (key, value)."""
     return text(b''.join(struct.pack('<HQ', key, value) for key, value in pairs))
 
 
@@ -55,7 +55,7 @@ class Fields:
         self._at = 0
 
     def numbers(self, form):
-        """Return the numbers of a struct format."""
+        """Return the next numbers; form is their format as in ``struct``, without byte order."""
         reader = struct.Struct('<' + form)
         if self._at + reader.size > len(self._data):
             raise ValueError('it ends too early')
@@ -64,7 +64,7 @@ class Fields:
         return values
 
     def data(self, form='I'):
-        """Return length-prefixed bytes as a view."""
+        """Return the next bytes as a view; form is the format of the length before them."""
         size, = self.numbers(form)
         start, self._at = self._at, self._at + size
         if self._at > len(self._data):
@@ -72,14 +72,14 @@ class Fields:
         return self._data[start:self._at]
 
     def text(self):
-        """Return a string."""
+        """Return the next field, a string."""
         try:
             return str(self.data(), 'utf-8')
         except UnicodeDecodeError:
             raise ValueError('it contains a string that is not UTF-8') from None
 
     def text_map(self):
-        """Return a map of strings as a dict."""
+        """Return the next field, a map of strings, as a dict."""
         inner, pairs = Fields(self.data()), {}
         while inner.left:
             key = inner.text()

@@ -30,7 +30,7 @@ class RecordedRows:
 
     t_ns holds the stamps of the file (int64); angles and heights are in degrees and metres as in
     the file, with the longitude unwrapped; resolution holds the rounding steps of lat_deg, lon_deg
-    and height_m in their units.
+    and height_m in their units; notes are sentences on skipped, unused or changed data.
     """
 
     path: str
@@ -102,8 +102,9 @@ def _resolution(table, name, values):
     """
     Return the step to which a column is rounded; 0 for a constant one, which adds no noise.
 
-    It is the last decimal of the longest field (writers drop trailing zeros), or the spacing of
-    float32 if all values are float32 numbers printed with more decimals than they have.
+    It is one unit of the last decimal of the field with the most decimals (writers drop trailing
+    zeros), or the spacing of float32 numbers if all values are such numbers, printed with more
+    decimals than float32 resolves.
     """
     if values.min() == values.max():
         return 0.0

@@ -10,7 +10,8 @@ from ins_sim.regular_file import check_regular
 SUFFIXES = ('.csv', '.csv.gz')
 # A day of IMU samples at 100 Hz has about 1 GB.
 LARGEST = 2 << 30
-# Decimal numbers compress to a half or a tenth; a file that compresses more is not a recording.
+# A gzip file may unpack to _FREE bytes or, if that is more, to _RATIO times its size. A recording
+# consists of decimal numbers and unpacks to two to ten times its size.
 _FREE, _RATIO = 64 << 20, 100
 _BLOCK = 1 << 20
 GZIP = b'\x1f\x8b'

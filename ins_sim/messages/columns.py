@@ -157,7 +157,7 @@ def count_strings(type_name, data, starts, sizes):
 
 
 class _Messages:
-    """Access to the same bytes of many messages, as (n,) arrays of a V dtype."""
+    """Read the same byte range of many messages, as (n,) arrays of the raw-bytes dtype V."""
 
     def __init__(self, data, starts):
         self._data, self._starts = data, starts

@@ -1,8 +1,9 @@
 """
 Convert records to the doubles of messages.
 
-Blocks are arrays with one row per message, in the order of the runs of the writer; the
-functions ``..._one`` return the runs of a single message as tuples of floats.
+The runs of a message are the slices of its doubles that change from message to message, see
+``cdr.Writer``. Blocks are arrays with one row per message, which holds its runs one after the
+other; the functions ``..._one`` return the runs of a single message as tuples of floats.
 """
 
 import math
@@ -31,7 +32,7 @@ def truth_blocks(frame, truth):
 
 
 def truth_one(truth):
-    """Return the runs of each of topics.TRUTH of an AdaptedTruth."""
+    """Return the runs of the messages on each of topics.TRUTH, from an AdaptedTruth."""
     return (((*truth.r_m, *truth.q_mb), (*truth.v_b, *truth.omega_mb_b)), (truth.q_nb,),
             (fix_one((truth.lat, truth.lon, truth.height)),),
             (truth.q_mb, truth.omega_ib_b, truth.f_ib_b))

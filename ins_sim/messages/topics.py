@@ -22,7 +22,7 @@ TRANSFORMS = 'tf2_msgs/msg/TFMessage'
 # Variance of unmeasured or unknown quantities, m^2, rad^2, (m/s)^2 or (rad/s)^2.
 UNMEASURED = 1e9
 # Variances of the truth, for 1 mm, 1 mm/s, 0.1 mrad, 1 urad/s and 10 um/s^2. They are not zero,
-# which filters divide by or read as unknown.  An error-free IMU has the last two.
+# because filters divide by them or take zero as unknown.  An error-free IMU has the last two.
 TRUE_PLACE, TRUE_VELOCITY, TRUE_ATTITUDE, TRUE_RATE, TRUE_FORCE = 1e-6, 1e-6, 1e-8, 1e-12, 1e-10
 # Variances of an error-free magnetometer and barometer, for 1 nT and 0.01 Pa.
 TRUE_FIELD, TRUE_PRESSURE = 1e-18, 1e-4
@@ -38,7 +38,8 @@ class Topic:
     name : relative name, or absolute if ROS requires it
     type_name : message type
     frames : frame ids by their default names, which ``named`` replaces by those of a vehicle
-    constants : {index: value} of doubles that are the same in all messages
+    constants : pairs (index, value) of doubles that are the same in all messages
+    runs : slices (start, stop) of the doubles that each message sets; None: those of the type
     numbers : integers of a NavSatFix, see Writer
     latched : whether a late subscriber gets the last message
     """
@@ -93,10 +94,10 @@ IMU_PRESSURE = Topic('imu/pressure', PRESSURE, ('imu_link',))
 _WITH_COVARIANCE = ((0, 7), (7, 43), (43, 49), (49, 85))
 # Free INS solution in odom, continuous but drifting (REP-105).
 INS_ODOMETRY = Topic('ins/odometry', ODOMETRY, ('odom', 'base_link'), (), _WITH_COVARIANCE)
-# its covariance is known
+# With a known covariance.
 INS_FIX = Topic('ins/fix', FIX, ('base_link',), (), ((0, 3), (3, 12)), (0, 0, 3))
-# In East, North, Up at the vehicle. The axes of map, at the datum, differ by the angle between
-# both places.
+# Components East, North, Up at the vehicle, although the frame id is map: the axes of map are
+# East, North, Up at the datum, turned against these by the angle between both places.
 ERROR_ATTITUDE = Topic('ins/error/attitude', VECTOR, ('map',))
 ERROR_VELOCITY = Topic('ins/error/velocity', VECTOR, ('map',))
 ERROR_POSITION = Topic('ins/error/position', VECTOR, ('map',))

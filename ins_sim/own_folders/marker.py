@@ -1,7 +1,8 @@
 """
-The marker file of a folder written by ins_sim, which lists the other entries.
+The marker file of a folder written by ins_sim, which lists the other entries of the folder.
 
-Only a folder that holds nothing else is ever replaced, by renaming, once the new one is complete.
+A folder is replaced only if it holds nothing but the marker and the entries that it lists. It is
+renamed, and then deleted, when the new folder is complete.
 """
 
 from contextlib import suppress
@@ -15,7 +16,11 @@ ANYTHING = '*'
 
 
 def foreign(folder, mark=''):
-    """Return why a folder must not be replaced, or '' if it holds only entries of its marker."""
+    """
+    Return why a folder must not be replaced, or '' if it holds only entries of its marker.
+
+    mark, unless empty, is a name that the marker must list.
+    """
     if not folder.is_dir():
         return 'it is not a folder'
     names = sorted(p.name for p in folder.iterdir())
@@ -50,7 +55,7 @@ def own_names(folder):
 
 
 def remove(folder):
-    """Delete the entries of the marker, and the folder itself if nothing else is in it."""
+    """Delete the entries that the marker lists, and the folder itself if nothing else is in it."""
     for name in own_names(folder) or ():
         entry = folder / name
         if entry.is_dir() and not entry.is_symlink():
@@ -65,5 +70,6 @@ def remove(folder):
 
 
 def write_marker(folder, mode, head, names):
+    """Write (mode 'w') or append (mode 'a') head and names to the marker of a folder."""
     with open(folder / MARKER, mode, encoding='ascii') as marker:
         marker.write(head + ''.join(json.dumps(name) + '\n' for name in names))

@@ -66,7 +66,7 @@ class OwnFolder:
         if self.work != self.path and self.work.exists():
             lock = self._locked(self.work)
             try:
-                # The folder was left behind by a killed process.
+                # No process holds the folder: a killed one may have left it behind.
                 if any(self.work.iterdir()) and ANYTHING not in (own_names(self.work) or ()):
                     raise ValueError(f'{self.work} is in the way and was not written by ins_sim; '
                                      'expected it to be moved')
@@ -96,7 +96,7 @@ class OwnFolder:
             if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
                 os.close(lock)
                 raise self._busy() from None
-            # This file system has no locks; of two processes only one will succeed to rename.
+            # This file system has no locks; of two processes only one will succeed in renaming.
         return lock
 
     def _check_idle(self):
@@ -114,7 +114,7 @@ class OwnFolder:
         write_marker(self.work, 'a', HEAD * fresh, names)
 
     def commit(self):
-        """Move the folder to its final path and list all its entries in the marker."""
+        """Move the folder to its final path, with all entries in the marker, and release it."""
         if self.work == self.path:
             self.close()
             return

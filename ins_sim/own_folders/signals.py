@@ -10,9 +10,9 @@ HELD = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 @contextmanager
 def signals_held():
     """
-    Delay signals that would interrupt a step until the end of the block.
+    Hold back the signals HELD, and deliver them at the end of the block.
 
-    A signal mask would not do: threads of NumPy's libraries receive signals as well.
+    A signal mask is not enough: threads of NumPy's libraries receive signals as well.
     """
     # Python handles signals, and allows handlers to be set, only in the main thread.
     main = threading.current_thread() is threading.main_thread()

@@ -114,7 +114,7 @@ class ImuSensorSettings(SettingsGroup):
                             choices=('reset', 'stop'))
 
     def check(self):
-        """Raise ValueError if tuned gyros are set with another output than integrated."""
+        """Raise ValueError if tuned gyros are set with an output other than integrated."""
         if self.gyro.model == 'dtg' and self.output != 'integrated':
             raise ValueError(f'output is {self.output} with gyro.model dtg; expected integrated, '
                              'because the readings of a tuned gyro are integrals of the angular '

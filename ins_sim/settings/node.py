@@ -51,7 +51,7 @@ class Pacing(LockStepPacing):
         return self.lock_step or self.real_time_factor == 0.0
 
 
-# 2025-01-01, a plausible date for other tools, and early enough for long runs.
+# 2025-01-01: a plausible date for other tools, and years before the last ROS stamp, in 2038.
 EPOCH_S = 1735689600
 MILLISECOND = 1_000_000
 

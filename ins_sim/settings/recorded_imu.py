@@ -219,9 +219,10 @@ class StandaloneStart(GivenState):
 
     def check_used(self):
         """
-        Raise ValueError if a heading is given that would not be used.
+        Raise ValueError if a heading is given that would not be used, or cannot be determined.
 
-        The user would otherwise believe that it was used.
+        Otherwise the user would not notice that the given heading is ignored. Without it, a start
+        from a fix can take its heading only from the course of the vehicle.
         """
         used = self.source == 'given' or self.heading == 'given'
         if self.heading_deg and not used:

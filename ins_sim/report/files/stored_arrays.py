@@ -10,8 +10,8 @@ from numpy.lib import format as npy_format
 from ins_sim.regular_file import check_regular
 from ins_sim.settings.shown import shown
 
-# The arrays of a real run do not shrink a hundredfold; a file that unpacks to more than that is
-# a zip bomb and is refused.
+# The arrays may unpack to _FREE bytes or, if that is more, to _RATIO times their packed size; a
+# larger file is refused as a zip bomb. Those of a real run are far below this ratio.
 _FREE, _RATIO = 1 << 26, 100
 
 
@@ -21,9 +21,9 @@ def read_arrays(path, shapes, optional=()):
 
     Parameters
     ----------
-    path : of the .npz file
-    shapes : {name: (kinds of dtype, shape)}, a shape with None where any length will do, the same
-        for all arrays
+    path : path of the .npz file
+    shapes : {name: (kinds of dtype, shape)}; None in a shape stands for a length that is not
+        prescribed but must be the same in all arrays
     optional : names that may be missing
 
     Raises

@@ -21,6 +21,7 @@ from ..charts.palette import coloured
 from .bokeh_marks import draw
 
 TOOLS = 'box_zoom,pan,wheel_zoom,reset,save'
+# Height of a panel, and of one whose axes have the same scale, px.
 PANEL, EQUAL = 250, 480
 VERSION, OLDEST = __version__, (3, 4)
 # Fixed margins for the axis numbers, so that the panels are aligned below each other.

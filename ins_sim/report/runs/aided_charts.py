@@ -15,11 +15,11 @@ PANELS = (('position', 'position error', (0, 1, 2), LENGTHS),
           ('velocity', 'velocity error', (0, 1, 2), SPEEDS),
           ('attitude', 'tilt', (0, 1), ANGLES), ('attitude', 'azimuth error', (2,), ANGLES))
 NAMES = tuple(EAST_NORTH_UP)
-# The line through the NIS is a mean over at least MEAN_OF fixes, and has at most SPANS points.
+# The line through the NIS is a moving mean over 1/SPANS of the accepted fixes, at least MEAN_OF.
 MEAN_OF, SPANS = 20, 60
-# It is interrupted at intervals longer than GAP times the usual interval of the fixes.
+# It is interrupted between fixes that are farther apart than GAP times their median interval.
 GAP = 5.0
-# Outages of a sensor that are closer than this part of the run are merged.
+# Outages of a sensor are merged if the time between them is less than this part of the run.
 APART = 1.0 / 500.0
 
 
@@ -54,7 +54,8 @@ def aided_chart(title, flown, sources, gate_probability):
 def _errors(t, errors, silent, x_label, span, field, label, components, units):
     """Return the panel of errors and of the three-sigma bands of the filter."""
     values, sigmas = getattr(errors, field), getattr(errors, f'{field}_sigma')
-    # The vertical channel is often held by the altimeter; its errors are then not shown.
+    # Height and vertical velocity often follow an ideal altimeter; their errors are then exactly
+    # zero and are not shown.
     shown = [axis for axis in components if axis < 2 or len(components) == 1
              or np.any(values[:, axis])]
     factor, unit = scale(units, float(np.abs(values[:, shown]).max()))

@@ -35,7 +35,8 @@ def history_curves(history, columns):
     """
     found, count = {}, len(history)
     for block in history.blocks(BLOCK):
-        # Use twice as many stretches as are drawn, because theirs have other borders.
+        # The curve is thinned again when it is drawn, to stretches with other borders; twice as
+        # many stretches here leave enough points for that.
         stretches = max(1, -(-2 * STRETCHES * len(block) // count))
         t_ns = block.t_ns[:]
         # The times as floats serve only to select the points.

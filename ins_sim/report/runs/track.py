@@ -11,7 +11,7 @@ from ..charts.scales import LENGTHS, scale
 from ..charts.thinning import kept_points
 from .curves import BLOCK, STRETCHES
 
-# A vehicle that stays within this distance of its start, m, does not move.
+# No track is shown of a vehicle that stays within this distance of its start, m.
 STAYS = 100.0
 
 
@@ -41,9 +41,9 @@ class Track:
 
 def run_tracks(result, flown=None):
     """
-    Return the Tracks of a SimulationResult, and of its AidedResult or None, the truth first.
+    Return the Tracks of a SimulationResult and, unless it is None, of its AidedResult ``flown``.
 
-    The list is empty if the vehicle does not move.
+    The first Track is the truth. The list is empty if the vehicle does not move.
     """
     tracks = [_thinned('truth', result.truth)]
     start = tracks[0].start

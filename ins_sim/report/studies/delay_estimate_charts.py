@@ -19,9 +19,10 @@ def _shown(triad):
 
 
 def _fit(title, triad):
-    """Rate without other errors over the angular acceleration, and the residual."""
+    """Return the Chart of delay effects and residuals over the angular acceleration."""
     shown = _shown(triad)
-    # The lags are nearly equal and much larger than the differences of the delays.
+    # Each delay includes the lag of the instrument. The lags are nearly equal and much larger than
+    # the differences of the delays, so the mean is subtracted to make the differences visible.
     common = sum(c.delay for c in shown) / len(shown) if len(shown) > 1 else 0.0
     top, bottom, widest = [], [], max(shown, key=lambda c: float(c.bins[3].max()))
     x, sigma = widest.bins[0] / DEG, 2.0 * widest.bins[3] * DEG_PER_HOUR
@@ -37,14 +38,14 @@ def _fit(title, triad):
     less = f'; a common {1e6 * common:.2f} us is subtracted' if common else ''
     return Chart('delay_fit', f'Effect of the delay: {title}', (
         Panel(tuple(top), label, 'rate without other errors [deg/h]',
-              f'A delay is the slope against the angular acceleration{less}'),
-        Panel(tuple(bottom), label, 'residual [deg/h]', 'What the fit leaves', height=0.7)),
-        caption='Lines: the delay of the legend. Points: means of the readings over intervals of '
-        'the angular acceleration.')
+              f'The slope against the angular acceleration is minus the delay{less}'),
+        Panel(tuple(bottom), label, 'residual [deg/h]', 'Residual of the fit', height=0.7)),
+        caption='Lines: effect of the delay in the legend. Points: means of the readings over '
+        'intervals of the angular acceleration.')
 
 
 def _residuals(title, triad):
-    """Means of the residuals over the parts of the records, in standard deviations."""
+    """Return the Chart of mean residuals of parts of the records, in standard deviations."""
     marks, most = [], 4.0
     for channel in triad.channels:
         before, times = 0.0, []
@@ -60,12 +61,12 @@ def _residuals(title, triad):
     return Chart('delay_residuals', f'Residuals over time: {title}', (
         Panel((*levels, *marks), f'time{several} [s]', 'mean residual over its sigma',
               y_range=(-most, most)),),
-        caption='Each point is the mean over a 64th of a record. White noise keeps within three '
-        'sigma; a wave or a step is an error that the model does not have.')
+        caption='Each point is the mean over a 64th of a record. White noise stays within three '
+        'sigma; a wave or a step is an error that the model does not include.')
 
 
 def _sigmas(title, triad):
-    """Standard deviations of the delays and of their differences."""
+    """Return the Chart of the standard deviations of the delays and of their differences."""
     found = [(c.axis, 1e6 * c.delay_sigma) for c in _shown(triad)]
     found += [(name, sigma) for name, _, sigma in delay_estimate.differences(triad)]
     return Chart('delay_sigma', f'Standard deviations of the delays: {title}', (

@@ -13,6 +13,7 @@ from .delay_charts import figure_charts
 from .delay_data import all_runs, ARCMIN, published
 
 ENU = ('east', 'north', 'up')
+# A smaller drift is a rounding error and is shown as 0, deg/h.
 ROUNDING = 1e-9
 # Largest error of a run without delays if the IMU samples the motion often enough, m.
 CLOSED = 0.01
@@ -59,7 +60,7 @@ def _drift_text(drift):
 
 
 def _axis(run, runs):
-    """Return the axis of the largest drift among the runs of the same motion."""
+    """Return the axis of the largest drift of a run; for rocking, of all runs that rock."""
     kind = run.settings.motion_generator.motion.kind
     if kind != 'rocking':
         return int(np.argmax(np.abs(run.prediction.drift)))

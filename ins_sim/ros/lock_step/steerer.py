@@ -36,7 +36,7 @@ class Steerer:
     settings : MotionGeneratorSettings
     source : TruthSource
     queue : HandQueue
-        Of the topic guidance.topic.
+        Queue of the topic named by guidance.topic.
     publish : callable
         Called with the bytes of every command.
     fault : callable
@@ -144,7 +144,8 @@ class Steerer:
                                  f'{seconds(newest_ns + self._epoch_ns)} to {seconds(stamp_ns)}; '
                                  'expected rising stamps of one publisher; the message was '
                                  'dropped')
-            # This is the solution of a repeated sample 0.
+            # In lock-step sample 0 is sent again until it is acknowledged, so its solution may
+            # come again.
             return
         if newest_ns is not None:
             self._intervals.append(t_ns - newest_ns)
