@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.earth.great_circle import FLATTENING2, GreatCircleRoute, Leg, unit_vector
+from ins_sim.core.earth.great_circle import AXIS_RATIO2, GreatCircleRoute, Leg, unit_vector
 from ins_sim.settings.route import TurningPoints
 
 R0 = ellipsoid.MEAN_RADIUS
@@ -69,7 +69,7 @@ def test_lengths_and_courses_of_geographiclib():
     worst = np.zeros(4)
     for _ in range(2000):
         lat, lon = rng.uniform(-1.5, 1.5, 2).tolist(), rng.uniform(-math.pi, math.pi, 2).tolist()
-        centric = [math.degrees(math.atan(FLATTENING2 * math.tan(x))) for x in lat]
+        centric = [math.degrees(math.atan(AXIS_RATIO2 * math.tan(x))) for x in lat]
         leg = Leg(lat[0], lon[0], lat[1], lon[1])
         if leg.length > 0.95 * math.pi * R0:
             continue
@@ -93,13 +93,13 @@ def test_the_course_turns_small_displacements(lat1, lon1, lat2, lon2, part, side
     leg = a_leg(lat1, lon1, lat2, lon2)
     x, z, small = part * leg.length, side * R0, 100.0
     lat, lon = leg.from_xz(x, z)
-    centric = math.atan(FLATTENING2 * math.tan(lat))
+    centric = math.atan(AXIS_RATIO2 * math.tan(lat))
     assume(abs(centric) < 1.5)
     chi = leg.course(lat, lon)
     for dx, dz in ((small, 0.0), (0.0, small)):
         # X is an angle about the pole of the leg.
         lat2, lon2 = leg.from_xz(x + dx / math.cos(z / R0), z + dz)
-        north = R0 * (math.atan(FLATTENING2 * math.tan(lat2)) - centric)
+        north = R0 * (math.atan(AXIS_RATIO2 * math.tan(lat2)) - centric)
         east = R0 * math.cos(centric) * math.remainder(lon2 - lon, 2 * math.pi)
         # 100 m on a parallel whose radius is at least 0.07 R0, and on a circle of latitude.
         bound = 2.0 * small ** 2 / R0 * (1.0 + math.tan(abs(centric)))
@@ -135,7 +135,7 @@ def test_legs_change_at_the_bisector():
     route = GreatCircleRoute(lat, lon)
     for side in (-1e-4, 1e-4):
         # On the bisector, inside and outside the corner, in geocentric latitude.
-        up = math.atan(math.tan(side) / FLATTENING2)
+        up = math.atan(math.tan(side) / AXIS_RATIO2)
         assert route.leg_at(up, 0.02 - side - 1e-9) == 0
         assert route.leg_at(up, 0.02 - side + 1e-9) == 1
     assert route.leg_at(0.0, 0.0, leg=1) == 1

@@ -10,7 +10,7 @@ from ins_sim import parameter_files, resources
 from ins_sim.core.earth import ellipsoid
 from ins_sim.core.attitude.angles import to_compass
 from ins_sim.core.motion.factory import make_motion
-from ins_sim.core.earth.great_circle import FLATTENING2
+from ins_sim.core.earth.great_circle import AXIS_RATIO2
 from ins_sim.settings.by_node import AIDING
 from ins_sim.settings.by_node import NODES
 from support.studies import run_offline
@@ -37,9 +37,9 @@ def corners(lengths, turns):
     geodesic = pytest.importorskip('geographiclib.geodesic').Geodesic(ellipsoid.MEAN_RADIUS, 0.0)
     points, course = [(55.0, 37.0)], COURSE
     for length, turn in zip(lengths, (*turns, 0)):
-        centric = math.degrees(math.atan(FLATTENING2 * math.tan(math.radians(points[-1][0]))))
+        centric = math.degrees(math.atan(AXIS_RATIO2 * math.tan(math.radians(points[-1][0]))))
         end = geodesic.Direct(centric, points[-1][1], course, 1e3 * length)
-        lat = math.degrees(math.atan(math.tan(math.radians(end['lat2'])) / FLATTENING2))
+        lat = math.degrees(math.atan(math.tan(math.radians(end['lat2'])) / AXIS_RATIO2))
         points.append((round(lat, 6), round(end['lon2'], 6)))
         course = end['azi2'] + turn
     return points

@@ -13,7 +13,7 @@ from ins_sim.core.numerics.elementary import atan2, shorter_turn, sincos, sqrt
 SEMI_MAJOR = 6378137.0
 ECCENTRICITY2 = 6.6943799901413e-3
 # Ratio of the semi-minor to the semi-major axis, 1 - f.
-FLATTENING = math.sqrt(1.0 - ECCENTRICITY2)
+AXIS_RATIO = math.sqrt(1.0 - ECCENTRICITY2)
 ROTATION_RATE = 7.292115e-5
 # Radius of the sphere used for great-circle legs, m.
 MEAN_RADIUS = 6371000.0
@@ -24,8 +24,8 @@ GRAVITY_RATIO = 0.00344978650684
 # a0, a1, a2 of normal gravity to second order in height h, relative to that at the surface:
 # 1 - h (a0 - a1 sin^2 lat) + a2 h^2 (Heiskanen and Moritz, "Physical Geodesy", 2-123; Groves
 # 2.139).
-SECOND_ORDER = (2.0 / SEMI_MAJOR * (2.0 - FLATTENING + GRAVITY_RATIO),
-                4.0 / SEMI_MAJOR * (1.0 - FLATTENING), 3.0 / (SEMI_MAJOR * SEMI_MAJOR))
+SECOND_ORDER = (2.0 / SEMI_MAJOR * (2.0 - AXIS_RATIO + GRAVITY_RATIO),
+                4.0 / SEMI_MAJOR * (1.0 - AXIS_RATIO), 3.0 / (SEMI_MAJOR * SEMI_MAJOR))
 # Argument ``terms`` of the gravity functions for each value of settings.place.Earth.gravity. It is
 # None, rather than a number, for free_air: the compiler then leaves out the second-order code.
 GRAVITY_TERMS = {'free_air': None, 'second_order': SECOND_ORDER}
@@ -92,12 +92,12 @@ def geodetic_directions(x, y, z):
     """
     p = sqrt(x * x + y * y)
     sin_lon, cos_lon = (y / p, x / p) if p > 0.0 else (0.0, 1.0)
-    sin, cos = _direction(z, p * FLATTENING)
+    sin, cos = _direction(z, p * AXIS_RATIO)
     for _ in range(3):
         sin_lat, cos_lat = _direction(
-            z + ECCENTRICITY2 / (1.0 - ECCENTRICITY2) * FLATTENING * SEMI_MAJOR * sin * sin * sin,
+            z + ECCENTRICITY2 / (1.0 - ECCENTRICITY2) * AXIS_RATIO * SEMI_MAJOR * sin * sin * sin,
             p - ECCENTRICITY2 * SEMI_MAJOR * cos * cos * cos)
-        sin, cos = _direction(FLATTENING * sin_lat, cos_lat)
+        sin, cos = _direction(AXIS_RATIO * sin_lat, cos_lat)
     height = p * cos_lat + z * sin_lat - SEMI_MAJOR * sqrt(
         1.0 - ECCENTRICITY2 * (sin_lat * sin_lat))
     return sin_lat, cos_lat, sin_lon, cos_lon, height

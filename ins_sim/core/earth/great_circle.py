@@ -18,7 +18,7 @@ import numpy as np
 from ins_sim.core.attitude import quaternion
 from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
 from . import ellipsoid
-from .sphere_metric import FLATTENING2
+from .sphere_metric import AXIS_RATIO2
 
 # Smallest angle between two points, and to the antipode, rad (6 m): for closer ones the great
 # circle through them is ill-conditioned.
@@ -28,7 +28,7 @@ LEAST_ANGLE = 1e-6
 def unit_vector(lat, lon):
     """Return the unit vectors in e, three components, of points at geodetic lat, lon (rad)."""
     (sl, cl), (sin_lon, cos_lon) = sincos(lat), sincos(lon)
-    sl = FLATTENING2 * sl
+    sl = AXIS_RATIO2 * sl
     norm = sqrt(sl * sl + cl * cl)
     return cl * cos_lon / norm, cl * sin_lon / norm, sl / norm
 
@@ -36,7 +36,7 @@ def unit_vector(lat, lon):
 def coordinates(u):
     """Return geodetic lat, lon (rad) of vectors of any length in e, three components."""
     p = sqrt(u[0] * u[0] + u[1] * u[1])
-    return atan2(u[2], FLATTENING2 * p), atan2(u[1], u[0])
+    return atan2(u[2], AXIS_RATIO2 * p), atan2(u[1], u[0])
 
 
 def dot(a, b):

@@ -11,8 +11,8 @@ east and q = m_N V_N to the north,
 from ins_sim.core.numerics.elementary import sincos, sqrt
 from . import ellipsoid
 
-FLATTENING2 = 1.0 - ellipsoid.ECCENTRICITY2
-SQUASH = 1.0 - FLATTENING2 * FLATTENING2
+AXIS_RATIO2 = 1.0 - ellipsoid.ECCENTRICITY2
+SQUASH = 1.0 - AXIS_RATIO2 * AXIS_RATIO2
 
 
 def sphere_metric(sin_lat, cos_lat, height):
@@ -22,7 +22,7 @@ def sphere_metric(sin_lat, cos_lat, height):
     w2 = 1.0 - ellipsoid.ECCENTRICITY2 * (sin_lat * sin_lat)
     sc = sin_lat * cos_lat
     bend, slope = sc * (ellipsoid.ECCENTRICITY2 / w2), sc * (SQUASH / d2)
-    return (1.0 / ((r_e + height) * sqrt(d2)), FLATTENING2 / ((r_n + height) * d2),
+    return (1.0 / ((r_e + height) * sqrt(d2)), AXIS_RATIO2 / ((r_n + height) * d2),
             slope - bend * r_e / (r_e + height), 2.0 * slope - 3.0 * bend * r_n / (r_n + height))
 
 

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from ins_sim.core.earth import ellipsoid
-from ins_sim.core.earth.sphere_metric import (direction_on_earth, FLATTENING2, sphere_metric,
+from ins_sim.core.earth.sphere_metric import (direction_on_earth, AXIS_RATIO2, sphere_metric,
                                               SQUASH)
 from ins_sim.core.numerics import taylor
 from ins_sim.core.numerics.elementary import atan2, sincos, sqrt
@@ -46,7 +46,7 @@ class Flow:
         lat_rate, lon_rate = ellipsoid.level_angles(v_e, v_n, sin_lat, cos_lat, self.height)
         m_e, m_n, by_e, by_n = sphere_metric(sin_lat, cos_lat, self.height)
         p, q = v_e * m_e, v_n * m_n
-        sin_c = sin_lat * FLATTENING2 / sqrt(1.0 - SQUASH * (sin_lat * sin_lat))
+        sin_c = sin_lat * AXIS_RATIO2 / sqrt(1.0 - SQUASH * (sin_lat * sin_lat))
         straight = ((p * p + q * q) * sin_c * lon_rate - p * q * (by_e - by_n) * lat_rate) / (
             m_e * q * a_n + m_n * p * a_e)
         return lat_rate, lon_rate, straight + turn
