@@ -11,8 +11,8 @@ from ins_sim.core.ensemble.aided_runs import simulate_aided_runs
 from ins_sim.core.ensemble.consistency import (ChiSquareSums, fix_sums, FixSums, merged_fixes,
                                                merged_sums, sums_of)
 from ins_sim.core.ensemble.group import ERRORS
+from ins_sim.core.ensemble.many_runs import check_steerable_length
 from ins_sim.core.ensemble.result import EnsembleResult, ErrorTally, joined, of_arrays
-from ins_sim.core.motion.motion import check_length
 from ins_sim.core.navigation.whole_run import SOLVED
 from ins_sim.core.numerics.instants import period_ns
 from ins_sim.core.simulation.aided import make_instruments
@@ -224,7 +224,7 @@ def fly_aided_ensemble(plan, read_motion, executor, store=None, progress=None):
 
 def check_aided_flight(plan, motion):
     """Raise ValueError, before any worker starts, if the settings do not define a run."""
-    check_length(plan.settings.simulation.motion_generator, motion)
+    check_steerable_length(plan.settings.simulation.motion_generator, motion)
     check_start(plan.settings.simulation)
     make_instruments(plan.settings)
     plan.wanted_ns

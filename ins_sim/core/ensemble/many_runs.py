@@ -91,14 +91,19 @@ def _navigated(settings, motion):
         yield imu, first, t_ns[first:], motion.at(t_ns[first:])
 
 
-def check_runs(settings, motion):
-    """Raise ValueError if SimulationSettings do not define runs of finite length on a motion."""
-    generator, after_s = settings.motion_generator, settings.strapdown.initial.after_s
+def check_steerable_length(generator, motion):
+    """Raise ValueError if runs of MotionGeneratorSettings on a motion have no finite length."""
     if generator.motion.kind == 'guided':
         # A guided motion only gets its length while it is steered.
         motion.length_s(generator.start_s, generator.duration_s)
     else:
         check_length(generator, motion)
+
+
+def check_runs(settings, motion):
+    """Raise ValueError if SimulationSettings do not define runs of finite length on a motion."""
+    generator, after_s = settings.motion_generator, settings.strapdown.initial.after_s
+    check_steerable_length(generator, motion)
     check_start(settings)
     if after_s > generator.duration_s > 0.0:
         raise ValueError(NO_OUTPUT)

@@ -89,3 +89,24 @@ def test_bad_input_is_one_sentence(tmp_path, capsys, words, sentence):
     assert main([*WORDS, '-o', str(tmp_path / 'out'), *words]) == 2
     error = capsys.readouterr().err
     assert sentence in error and error.count('\n') == 1 and not list(tmp_path.iterdir())
+
+
+def test_each_run_steers_its_own_guided_flight(tmp_path):
+    """The runs of a guided flight end like single runs, to the bit, and differ in their motion."""
+    words = ['--params-file', 'guided_flight', '--params-file', 'imu_tactical_mems', '-p',
+             'duration_s:=5.0', '-p', 'motion.guided.offset_m:=1.0', '-p',
+             'window.cycles:=100']
+    assert main(['monte-carlo', '--aided', *words, '--runs', '2', '--jobs', '1', '-o',
+                 str(tmp_path / 'study')]) == 0
+    flown = []
+    with np.load(tmp_path / 'study' / 'ensemble.npz') as arrays:
+        for k in range(2):
+            folder = tmp_path / f'run_{k}'
+            assert main(['simulate', '--aided', *words, '-p', f'run:={k}', '-o',
+                         str(folder)]) == 0
+            with np.load(folder / 'run.npz') as run:
+                for name in ('attitude', 'velocity', 'position'):
+                    np.testing.assert_array_equal(run[f'aided_errors_{name}'][-1],
+                                                  arrays[f'final_{name}_error'][k])
+                flown.append(run['truth_lat'][-1])
+    assert flown[0] != flown[1]

@@ -69,8 +69,8 @@ class GuidedMotion(RouteMotion):
         """Raise ValueError if a run up to end_s, s, has not been flown."""
         if end_s > self.end_s and not self._steered.is_steered:
             raise ValueError('motion.kind is guided; expected another kind: a guided motion '
-                             'depends on the navigation and can be flown only by simulate and by '
-                             'the live nodes')
+                             'depends on the navigation and can be flown only by simulate, '
+                             'monte-carlo and the live nodes')
         super().check_end(end_s)
 
     def length_s(self, start_s, duration_s):
