@@ -12,6 +12,7 @@ from ins_sim.core.earth import ellipsoid
 from ins_sim.core.navigation import alignment
 from ins_sim.core.postprocessing import standstill
 from ins_sim.core.postprocessing.standstill import standard_error
+from ins_sim.core.postprocessing.windows import StillWindow
 from ins_sim.core.postprocessing.imu_record import RecordedImu
 from ins_sim.core.postprocessing.sources import Sources
 from ins_sim.core.postprocessing.navigate import navigate
@@ -166,3 +167,14 @@ def test_noise_is_judged_by_its_rate(rate_hz):
     # 0.2 / sqrt(20), for 400 means in a window.
     assert still.force_sd == pytest.approx(0.2 / math.sqrt(20.0), rel=0.05)
     assert still.rate_sd == pytest.approx(0.04 / math.sqrt(20.0), rel=0.05)
+
+
+def test_the_end_of_a_standstill_is_explained():
+    """The message shows the criterion that a window breaks, even if the window itself is quiet."""
+    still = StillWindow(0, 100, 10**9, True, np.array([0.0, 0.0, 9.8]), np.zeros(3), 0.01, 1e-4)
+    turned = still._replace(middle_ns=3 * 10**9, force=np.array([0.0, 2.0, 9.6]))
+    for last, reason in ((turned, 'change of the means 2 m/s^2 and 0 rad/s'),
+                         (still._replace(moving=True), 'the reference moves faster than 0.3 m/s')):
+        search = standstill.StandstillSearch(AlignmentSettings(), 10**9)
+        assert [search.take(window) for window in (still, still, last)] == [None] * 3
+        assert 'the vehicle has moved at' in search.moved and reason in search.moved

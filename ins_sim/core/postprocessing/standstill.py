@@ -87,8 +87,8 @@ class StandstillSearch:
         self._note(window)
         still, found = self._is_quiet(window) and not window.moving, None
         if self.run and not (still and self._joins(window)):
-            found = self.end()
-            self.moved = '' if found else self._why(window)
+            why, found = self._why(window), self.end()
+            self.moved = '' if found else why
         if still or self.run:
             self.run.append(window)
         if len(self.run) == self._used:
@@ -124,11 +124,16 @@ class StandstillSearch:
             self._quietest = window
 
     def _why(self, window):
-        limits = self._limits
+        """Return why a window ends the run: it is not quiet, or differs from those before."""
+        limits, (turned, changed) = self._limits, self._off_run(window)
         return (f'the vehicle has moved at {seconds(window.middle_ns)}: standard deviation '
                 f'{window.force_sd:.3g} m/s^2 (limit {limits.force_sd_m_s2:g}) and '
                 f'{window.rate_sd:.3g} rad/s (limit {limits.rate_sd_rad_s:g}), mean rate '
-                f'{length(window.rate):.3g} rad/s (limit {limits.rate_rad_s:g})')
+                f'{length(window.rate):.3g} rad/s (limit {limits.rate_rad_s:g}); change of the '
+                f'means {turned:.3g} m/s^2 and {changed:.3g} rad/s (limits those of the standard '
+                'deviations)'
+                + (f'; the reference moves faster than {limits.speed_m_s:g} m/s'
+                   if window.moving else ''))
 
     def describe(self):
         """Return why no standstill was found; requires at least one window."""
