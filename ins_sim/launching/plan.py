@@ -4,8 +4,8 @@ What a launch file starts: processes, their parameter files, and the overrides b
 Precedence of parameters, later ones override earlier ones: defaults of the nodes, preset of the
 motion, preset of the instrument, parameter files in their order, launch arguments. As in every ROS
 system the section of one node in any file overrides ``/**`` in all files. The presets therefore
-contain only ``/**``, and the launch arguments are in a last file under the full name of each
-node.
+contain only ``/**`` (except ``guided_flight``, whose initial errors are those of one node), and
+the launch arguments are in a last file under the full name of each node.
 """
 
 from dataclasses import dataclass

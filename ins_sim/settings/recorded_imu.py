@@ -130,7 +130,7 @@ class AlignmentSettings(SettingsGroup):
     Search for a stationary interval, and alignment in it.
 
     The standstill limits are wide, because engines may run. They apply to the standard deviation
-    within a window (mean of the three axes) and to the deviation of each window mean from the
+    within a window (rms over the three axes) and to the deviation of each window mean from the
     mean of the interval.
     """
 

@@ -17,7 +17,7 @@ GUARD_S = 60.0
 
 @pytest.mark.slow
 def test_mutated_files_end_in_a_result_or_a_sentence(tmp_path, capsys):
-    """5000 mutations of every format give a result or one message; a seed identifies each."""
+    """5000 mutations, of all formats in turn, give a result or one message; a seed gives each."""
     hostile, failures = Hostile(tmp_path), []
     with warnings.catch_warnings():
         # A warning of NumPy would be printed to the user.

@@ -147,8 +147,8 @@ class AidedErrors(History):
     velocity, position : (n, 3) m/s and m
     attitude_sigma, velocity_sigma, position_sigma : (n, 3) standard deviations by the filter; NaN
         if it has none
-    estimates, estimates_sigma : (n, 3) mounting error mu (rad), kx and kz of the velocity meter,
-        and their standard deviations; NaN if not estimated
+    estimates : (n, 3) mounting error mu (rad), kx and kz of the velocity meter; 0 if not estimated
+    estimates_sigma : (n, 3) their standard deviations; NaN if the filter has none
     """
 
     t_ns: np.ndarray
