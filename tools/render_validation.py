@@ -38,10 +38,11 @@ def render(template, figures):
 
 
 def take(run, figures, wanted):
-    """Return the figures, with the shown ones replaced by those that a run has measured."""
+    """Return the wanted figures, replaced by those that a run has measured, and their names."""
+    known = {name: figure for name, figure in figures.items() if name in wanted}
     new = {name: {**figure, 'made_with': run['made_with']}
            for name, figure in run['figures'].items() if name in wanted}
-    return dict(sorted({**figures, **new}.items())), sorted(new)
+    return dict(sorted({**known, **new}.items())), sorted(new)
 
 
 def main(words=None):

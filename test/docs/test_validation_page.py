@@ -3,6 +3,7 @@
 import importlib.util
 import json
 
+from ins_sim import __version__
 import pytest
 from support.places import ROOT
 
@@ -16,7 +17,8 @@ def tool(tmp_path, monkeypatch):
     spec.loader.exec_module(module)
     for name, text in (('TEMPLATE', 'a {{one:.2f}}, b {{two[1]:.1e}}\n'),
                        ('VALUES', json.dumps({'figures': {
-                           'one': {'value': 1.0}, 'two': {'value': [0.0, 3e-5]}}})),
+                           'one': {'value': 1.0}, 'two': {'value': [0.0, 3e-5]},
+                           'unused': {'value': 7.0}}})),
                        ('PAGE', '')):
         (tmp_path / name).write_text(text)
         monkeypatch.setattr(module, name, tmp_path / name)
@@ -34,11 +36,16 @@ def test_the_page_is_its_rendering(tool):
     figures = json.loads(real('figures/validation.json'))['figures']
     assert tool.names(template) == set(figures)
     assert tool.render(template, figures) == real('explanation/validation.md')
-    assert all(figure['made_with']['version'] for figure in figures.values())
+
+
+def test_the_figures_are_of_this_version():
+    """All figures were made with the version of the package: ``make figures`` precedes a release."""
+    figures = json.loads(real('figures/validation.json'))['figures']
+    assert {figure['made_with']['version'] for figure in figures.values()} == {__version__}
 
 
 def test_the_tool_renders_takes_and_checks(tool, tmp_path, capsys):
-    """New figures of a run replace older ones, and a page edited by hand is detected."""
+    """New figures replace older ones, unused ones are dropped, and an edited page is detected."""
     assert tool.main([]) == 0 and tool.PAGE.read_text() == 'a 1.00, b 3.0e-5\n'
     run = tmp_path / 'run.json'
     run.write_text(json.dumps({'made_with': {'version': '9'}, 'figures': {
@@ -46,7 +53,8 @@ def test_the_tool_renders_takes_and_checks(tool, tmp_path, capsys):
     assert tool.main(['--take', str(run)]) == 0
     assert '1 of the 2 figures of the page are new' in capsys.readouterr().out
     assert tool.PAGE.read_text() == 'a 2.00, b 3.0e-5\n'
-    assert json.loads(tool.VALUES.read_text())['figures']['one']['made_with'] == {'version': '9'}
+    stored = json.loads(tool.VALUES.read_text())['figures']
+    assert set(stored) == {'one', 'two'} and stored['one']['made_with'] == {'version': '9'}
     assert tool.main(['--check']) == 0
     tool.PAGE.write_text('a 2.01\n')
     assert tool.main(['--check']) == 1
