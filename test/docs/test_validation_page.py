@@ -39,7 +39,7 @@ def test_the_page_is_its_rendering(tool):
 
 
 def test_the_figures_are_of_this_version():
-    """All figures were made with the version of the package: ``make figures`` precedes a release."""
+    """All figures were made with the version of the package; see "How a release is made"."""
     figures = json.loads(real('figures/validation.json'))['figures']
     assert {figure['made_with']['version'] for figure in figures.values()} == {__version__}
 

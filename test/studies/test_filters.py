@@ -1,9 +1,9 @@
 """
 The tables of the filter study: rms errors of several flights, and consistency of the filters.
 
-The rms errors of a few flights scatter widely. The published ones are therefore compared with those
-of a hundred flights, which ``make figures`` simulates. Four flights show whether a filter still
-works.
+The rms errors of a few flights scatter widely. The published ones are therefore compared with
+those of a hundred flights, which ``make figures`` simulates. Four flights show whether a filter
+still works.
 """
 
 from functools import partial
